@@ -1,7 +1,7 @@
-// allocation_test.cpp -- memory that ends: whatever allocation of set-up, of a pass or of reading a film fails, one
-// exception comes out, nothing leaks into the next render, and that has its bits.
+// allocation_test.cpp -- out of memory: if any allocation of set-up, of a pass or of reading a film fails, one
+// exception is thrown, nothing leaks, and the next render is bit-identical.
 //
-// The allocator of this program is replaced. It fails once, at the n-th allocation from when it is told to.
+// The test replaces the allocator by one that fails once, at the n-th allocation after it is armed.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -14,7 +14,7 @@
 namespace {
 
 std::atomic<std::int64_t> left_until_failure{-1};   // below 0: none
-std::atomic<std::int64_t> live{0};                  // blocks that are not freed
+std::atomic<std::int64_t> live{0};                  // blocks not yet freed
 
 void* allocate(std::size_t size, std::size_t alignment) {
     if (left_until_failure.load(std::memory_order_relaxed) >= 0 && left_until_failure.fetch_sub(1) == 0) return nullptr;
@@ -57,12 +57,12 @@ void operator delete[](void* p, const std::nothrow_t&) noexcept { release(p); }
 namespace dg {
 namespace {
 
-/// Sets an allocation to fail for as long as it lives.
+/// Arms the failure of an allocation during its lifetime.
 class Failing {
   public:
     explicit Failing(std::int64_t at) { left_until_failure = at; }
     ~Failing() { left_until_failure = -1; }
-    /// Whether it has failed.
+    /// Whether the allocation has failed.
     static bool failed() { return left_until_failure < 0; }
 };
 
@@ -72,7 +72,7 @@ Material window() {
     return {"window", m};
 }
 
-/// A table with a ball of glass, a window and lamps, through an exact lens: from the description to the picture.
+/// Renders a table with a glass ball, a window and lamps through an exact lens, from the description to the picture.
 std::vector<float> whole_render(double flare) {
     World world;
     world.add(1, {"glass", DielectricMaterial{.ior = 1.5f}}, placed({0, 0.15f, 0}, 0.12f));
@@ -95,7 +95,8 @@ std::vector<float> whole_render(double flare) {
     return other.mean_xyz();
 }
 
-/// Places of failure: all of the first ones, then ever fewer. DG_ALLOCATIONS=1000 looks at nearly all.
+/// Next allocation to fail after `at`: consecutive at first, then increasingly sparse. DG_ALLOCATIONS=1000 tests nearly
+/// all allocations.
 std::int64_t next(std::int64_t at) {
     static const char* const more = std::getenv("DG_ALLOCATIONS");
     static const std::int64_t dense = more ? std::atoi(more) : 12;
@@ -103,7 +104,7 @@ std::int64_t next(std::int64_t at) {
 }
 
 void fail_everywhere(double flare) {
-    const std::vector<float> wanted = whole_render(flare);   // what is made once and kept is there now
+    const std::vector<float> wanted = whole_render(flare);   // fills caches
     std::int64_t failures = 0;
     for (std::int64_t at = 0;; at = next(at)) {
         const std::int64_t before = live;
@@ -114,7 +115,7 @@ void fail_everywhere(double flare) {
                 complete = whole_render(flare) == wanted;
             } catch (const std::bad_alloc&) {
                 caught = true;
-            } catch (const Error& error) {   // of Embree's allocations
+            } catch (const Error& error) {   // from Embree's allocations
                 caught = std::string(error.what()).find("out of memory") != std::string::npos;
             }
             if (!Failing::failed()) {
@@ -124,8 +125,8 @@ void fail_everywhere(double flare) {
         }
         ++failures;
         INFO("allocation ", at);
-        CHECK((caught || complete));   // a library may do without
-        CHECK(live - before < 400);    // nothing of a scene or a film; threads keep what they have
+        CHECK((caught || complete));   // a library may handle the failure itself
+        CHECK(live - before < 400);    // no scene or film leaks; threads keep some buffers
     }
     CHECK(failures > 60);
     CHECK(whole_render(flare) == wanted);

@@ -1,8 +1,7 @@
-// camera_first_ray.h -- the first ray of a camera path as the lens and the film know it: how densely light paths and the
-// camera's samples draw it. The camera's density is the mean over the path's wavelengths of N / e, N the density
-// of film points (Footprint::total) and e the etendue (Reprojection) per unit square of lens samples. It is up to
-// factors that light paths have too: the density of times, where all lines are open at once, and the integral by
-// which N is divided.
+// camera_first_ray.h -- densities with which light paths and camera samples draw the first ray of a camera path. The
+// camera's density is the mean over the path's wavelengths of N / e, with N the density of film points
+// (Footprint::total) and e the etendue (Reprojection) per unit square of lens samples. Factors common to camera and
+// light paths are omitted: the density of times if all lines are open at once, and the integral that normalizes N.
 #pragma once
 #include <span>
 
@@ -14,7 +13,7 @@ namespace dg {
 
 class CameraFirstRay final : public FirstRay {
   public:
-    /// `ray`: camera frame; `landings`: of its wavelengths, as of RayOnFilm. They outlive this.
+    /// `ray`: in the camera frame. `landings`: film points of its wavelengths, as in RayOnFilm. Both must outlive this.
     CameraFirstRay(const LightWeight& weight, const Ray& ray, const FilmDensity& density, const Sensor& sensor,
             std::span<const Reprojection> landings)
         : FirstRay(weight, ray.time), weight_(weight), ray_(ray), film_(density), sensor_(sensor), landings_(landings) {}
@@ -24,7 +23,7 @@ class CameraFirstRay final : public FirstRay {
         const Affine3d to_camera = inverse(weight_.pose(ray_.time));
         return weight_.pupil().pdf(w > 0 ? to_camera.point(p) : to_camera.vector(p), w, ray_);
     }
-    /// Most paths are never asked.
+    /// Computed on demand, as most paths do not need it.
     double camera_density() const override {
         return RayOnFilm(film_, sensor_, landings_, ray_.time).camera_density();
     }

@@ -7,8 +7,8 @@
 namespace dg {
 namespace {
 
-// A smaller part of a wavelength's light than this moves to another pixel by chance: adding to one more
-// pixel costs more than that is worth.
+// Smaller shares of a wavelength's light move to another pixel by Russian roulette, since adding to one more pixel
+// costs time.
 constexpr float kLeastShare = 0.25f;
 
 }  // namespace
@@ -36,7 +36,7 @@ void Footprint::fill(Axis& axis, const Filter& filter, float at, int first, int 
     const int end = std::min(int(std::floor(at + r)) + 1, first + count);
     axis.count = std::max(0, end - axis.first);
     if (axis.first == whole || axis.count == 0) return filter.axis(at - axis.first - 0.5f, axis.count, axis.f);
-    // From its own beginning, not the region's: the same bits in a crop.
+    // Sums start at the filter's extent instead of the region's, so that crops are bit-identical.
     float all[kReach];
     filter.axis(at - whole - 0.5f, end - whole, all);
     std::copy_n(all + (axis.first - whole), axis.count, axis.f);
@@ -71,7 +71,7 @@ float Footprint::share(Pixel p) const {
 float Footprint::sign(Pixel p) const { return x_.of(p.x) * y_.of(p.y) < 0 ? -1.f : 1.f; }
 
 Pixel Footprint::choose(Vec2f u) const {
-    const auto row = [&](int y) {   // of the row: sum of n |f|
+    const auto row = [&](int y) {   // sum of n |f| over the row
         if (density_.even()) return std::abs(y_.f[y]) * x_sum_;
         float sum = 0;
         for (int x = 0; x < x_.count; ++x)
@@ -133,7 +133,7 @@ Landings land(const FilmDensity& density, const Sensor& sensor, const Hero& hero
         sum += there[i]->total() / other.aim_weight;
     }
     Landings landings(hero.pixel);
-    if (!(home.total() > 0)) return landings;   // the very moment at which its line opens
+    if (!(home.total() > 0)) return landings;   // at the instant at which its line opens
     const float scale = kWavelengths * density.integral() / sum;
     landings.add(hero.pixel, 0, home.sign(hero.pixel) * home.total() * scale *
                                     (hero.weight / hero.aim_weight));
@@ -144,10 +144,11 @@ Landings land(const FilmDensity& density, const Sensor& sensor, const Hero& hero
         const auto add = [&](Pixel p, float share) {
             landings.add(p, i, there[i]->sign(p) * weight * share);
         };
-        // The hero's pixel was drawn by its share at home; as much of that as is also its share there stays.
-        const float kept = drawn > 0 ? std::min(1.f, there[i]->share(hero.pixel) / drawn) : 0.f;
-        if (kept > 0) add(hero.pixel, kept);
-        const float moved = 1 - kept, chance = std::min(1.f, moved / kLeastShare);
+        // The hero's pixel was drawn by its share at the hero's film point. The overlap with its share at this
+        // wavelength's film point stays.
+        const float overlap = drawn > 0 ? std::min(1.f, there[i]->share(hero.pixel) / drawn) : 0.f;
+        if (overlap > 0) add(hero.pixel, overlap);
+        const float moved = 1 - overlap, chance = std::min(1.f, moved / kLeastShare);
         if (u < chance)
             add(there[i]->choose_excess(home, hero.pixel, u / chance),
                 std::max(moved, kLeastShare));

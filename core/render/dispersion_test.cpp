@@ -7,7 +7,7 @@
 namespace dg {
 namespace {
 
-/// Samples per pixel of a round that goes to some pixels only.
+/// Samples per pixel of a round that skips pixels.
 std::vector<std::uint32_t> patchy(int pixels) {
     std::vector<std::uint32_t> counts;
     for (int i = 0; i < pixels; ++i)
@@ -15,9 +15,9 @@ std::vector<std::uint32_t> patchy(int pixels) {
     return counts;
 }
 
-/// A lens that shifts each wavelength by an amount of its own and loses nothing: whatever the round, each
-/// wavelength must bring n(p) to pixel p on average, and of a world that grows brighter in proportion to
-/// time as much as the pixel's line sees of it. Largest |z| over pixels and wavelengths.
+/// Simulates a lossless lens that shifts each wavelength by a different amount. For every round, each wavelength must
+/// add n(p) to pixel p on average; in a world with luminance proportional to time, the mean over the exposure of the
+/// pixel's line. Returns the largest |z| over pixels and wavelengths.
 double largest_deviation(const Filter& filter, const std::vector<std::uint32_t>& counts,
                          std::span<const std::uint32_t> told, const Shutter& shutter = {},
                          bool told_shutter = true) {
@@ -57,10 +57,10 @@ double largest_deviation(const Filter& filter, const std::vector<std::uint32_t>&
     double largest = 0;
     for (std::size_t i = 0; i < sums.size(); ++i) {
         const int pixel = int(i / 4);
-        // The curve is symmetric: its mean time is the middle of the window.
+        // The opening curve is symmetric, so its mean time is the middle of the window.
         const double seen = brightens ? shutter.draw(pixel % 8, pixel / 8, 0.5f).time : 1;
         const double expected = rounds * counts[pixel] * seen * shutter.weight();
-        const double sigma = std::sqrt(squares[i]);   // of a sum of independent arrivals
+        const double sigma = std::sqrt(squares[i]);   // sum of independent arrivals
         largest = std::max(largest, std::abs(sums[i] - expected) / std::max(sigma, 1e-9));
     }
     return largest;
@@ -82,7 +82,7 @@ TEST_CASE("where pixels get different numbers of samples, so do the landings") {
     for (const FilterKind kind : {FilterKind::box, FilterKind::gaussian, FilterKind::mitchell}) {
         const Filter filter(kind);
         CHECK(largest_deviation(filter, counts, counts) < 5);    // of 192
-        CHECK(largest_deviation(filter, counts, {}) > 50);       // densities that forget the counts
+        CHECK(largest_deviation(filter, counts, {}) > 50);       // planted fault: densities without the counts
     }
 }
 
@@ -99,7 +99,7 @@ TEST_CASE("wavelengths land on lines that are open then, in proportion to how fa
             const Filter filter(kind);
             CHECK(largest_deviation(filter, even, {}, shutter) < 5);   // of 192
             CHECK(largest_deviation(filter, counts, counts, shutter) < 5);
-            if (scan != ScanOrder::none)   // densities that forget the lines
+            if (scan != ScanOrder::none)   // planted fault: densities without the shutter of lines
                 CHECK(largest_deviation(filter, even, {}, shutter, false) > 10);
         }
     }
@@ -131,7 +131,7 @@ TEST_CASE("a wavelength that the lens stops brings nothing and takes nothing") {
     const FilmDensity density(filter, region);
     const Hero hero{{4.4f, 3.3f}, {4, 3}, 0, 0.8f, 0.8f};
     const auto landings = land(density, sensor, hero, std::array<Reprojection, 3>{}, 0.5f);
-    // The ray could only have been drawn by the hero, one time in four.
+    // Only the hero could have drawn the ray, with probability 1/4.
     CHECK(landings.end() - landings.begin() == 1);
     CHECK(landings.begin()->weight[0] == doctest::Approx(4 * 0.8));
     for (int i = 1; i < kWavelengths; ++i) CHECK(landings.begin()->weight[i] == 0);

@@ -19,7 +19,7 @@ std::size_t index_in(const FilmLayout& film, Pixel p) {
     return std::size_t(p.y - film.offset_y) * film.width + std::size_t(p.x - film.offset_x);
 }
 
-/// Calls use(pixel, its index in the film) for the pixels of a region that are not in the hole.
+/// Calls use(pixel, index in the film) for the pixels of a region outside the hole.
 template <typename Use>
 void for_each_drawn(const FilmLayout& region, const FilmLayout& film, const PixelBox& hole, const Use& use) {
     for (int y = region.offset_y; y < region.offset_y + region.height; ++y)
@@ -27,7 +27,7 @@ void for_each_drawn(const FilmLayout& region, const FilmLayout& film, const Pixe
             if (!hole.contains(x, y)) use(Pixel{x, y}, index_in(film, {x, y}));
 }
 
-/// Samples of each pixel of the region, where they may differ: of a round, or of a region with a hole, 1 and 0.
+/// Number of samples of each pixel of the region, if they differ: from a round, or 1 and 0 for a region with a hole.
 std::vector<std::uint32_t> counts_of(const RenderSettings& settings, const FilmLayout& region,
                                      const FilmLayout& film) {
     const SampleRound& round = settings.round;
@@ -50,8 +50,7 @@ struct RoundSums {
         });
     }
     double mean_count() const { return double(count) / double(pixels); }
-    /// Mean sample index up to which a part is drawn: the same number, to the bit, at the end of one round
-    /// and the begin of the next.
+    /// Mean sample index before a part. Bit-identical at the end of a round and at the beginning of the next.
     double until(std::uint32_t part) const {
         return double(begin * SampleRound::kParts + count * part) / (double(pixels) * SampleRound::kParts);
     }

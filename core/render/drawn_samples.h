@@ -1,5 +1,5 @@
-// drawn_samples.h -- which samples of which pixels one call draws: of a part of the film's region, the same of every
-// pixel, or a round's own number of each.
+// drawn_samples.h -- the pixels and sample indices that a call of render() draws: a part of the film's region, with the
+// same samples for every pixel, or with a number of samples per pixel from a round.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,18 +13,18 @@ namespace dg {
 
 class DrawnSamples {
   public:
-    /// The settings outlive this.
+    /// `settings` must outlive this.
     DrawnSamples(const RenderSettings& settings, const FilmLayout& film);
 
-    /// The part of the film's region that is drawn, but for the hole.
+    /// The part of the film's region that is drawn, including the hole.
     const FilmLayout& region() const { return region_; }
-    /// Samples of each of its pixels; empty where all are alike, which needs no weighing (FilmDensity).
+    /// Number of samples of each pixel; empty if all are equal, which needs no weights (FilmDensity).
     std::span<const std::uint32_t> counts() const { return counts_; }
     /// Samples [begin, end) that this call draws of a pixel.
     std::array<std::uint32_t, 2> of(Pixel pixel) const;
-    /// Sample indices per unit of the counts, which are those of a whole round.
+    /// Sample indices of this call per unit of the counts, which are for a whole round.
     double per_count() const;
-    /// Mean indices of the samples that this call begins and ends with: what light paths go by.
+    /// Mean first and last sample index of this call, which determine the light paths to draw.
     std::array<double, 2> indices() const;
 
   private:

@@ -9,7 +9,7 @@ namespace {
 
 constexpr FilmLayout kFilm{.width = 5, .height = 4, .offset_x = 10, .offset_y = 20};
 
-/// All samples of a call, by pixel of the film.
+/// Sample ranges of a call, for each pixel of the film.
 std::vector<std::array<std::uint32_t, 2>> drawn(const RenderSettings& settings) {
     const DrawnSamples samples(settings, kFilm);
     std::vector<std::array<std::uint32_t, 2>> all(20);
@@ -48,7 +48,7 @@ TEST_CASE("a window and a hole leave the pixels between") {
     const DrawnSamples samples(s, kFilm);
     CHECK(samples.region().width == 3);
     CHECK(samples.region().height == 3);
-    REQUIRE(samples.counts().size() == 9);   // the hole has none, so densities differ
+    REQUIRE(samples.counts().size() == 9);   // no samples in the hole, so densities differ
     CHECK(samples.counts()[4] == 0);
     CHECK(samples.counts()[0] == 1);
     CHECK(samples.per_count() == 1);
@@ -89,7 +89,7 @@ TEST_CASE("parts of a round are the round, and paths go on where the last part e
         CHECK(first[i][1] == second[i][0]);
         CHECK(second[i][1] == whole[i][1]);
     }
-    CHECK(DrawnSamples(a, kFilm).indices()[1] == DrawnSamples(b, kFilm).indices()[0]);   // to the bit
+    CHECK(DrawnSamples(a, kFilm).indices()[1] == DrawnSamples(b, kFilm).indices()[0]);   // bit-identical
 }
 
 }  // namespace dg

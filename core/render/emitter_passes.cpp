@@ -31,7 +31,7 @@ void add_emitter_passes(Passes& passes, const Picture& p, const DrawnSamples& dr
         passes.add<StraightLightPass>(paths(p.settings.light.m1), p, weight, cone);
         passes.add<BouncedLightPass>(paths(p.settings.light.m2), p, weight, cone);
     }
-    std::shared_ptr<const FlareAim> aim;   // one for both
+    std::shared_ptr<const FlareAim> aim;   // shared by ghosts and scatter
     if (const FlarePlan& plan = p.settings.flare; plan.per_sample > 0) {
         need_exact(p.camera, "flare");
         auto guide = plan.guide ? plan.guide : std::make_shared<const FlareGuide>(aim_of(p), p.settings);

@@ -1,4 +1,4 @@
-// emitter_passes.h -- the passes that follow light from the emitters, as far as the settings ask for them.
+// emitter_passes.h -- adds the passes that trace light from the emitters, if the settings enable them.
 #pragma once
 #include "camera/inverse/pixel_cone.h"
 #include "render/drawn_samples.h"
@@ -7,8 +7,8 @@
 
 namespace dg {
 
-/// Light straight to the lens and over surfaces, ghosts, and what the lens scatters. Error for ghosts or scatter of a
-/// lens that is not traced. `weight` and `cone` (of camera samples) outlive the passes.
+/// Adds light paths directly to the lens and over surfaces, ghosts, and scattering in the lens. Throws Error for ghosts
+/// or scattering of a lens that is not traced. `weight` and `cone` (of camera samples) must outlive the passes.
 void add_emitter_passes(Passes& passes, const Picture& picture, const DrawnSamples& drawn,
                         const LightWeight& weight, const PixelCone& cone);
 

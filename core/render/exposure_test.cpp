@@ -1,4 +1,4 @@
-// Camera, shutter and film together: what a moving camera leaves on the film, by closed forms.
+// Camera, shutter and film together: exposure by a moving camera, compared with closed forms.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kWide = 24, kHigh = 6;
 
-/// A wall in the plane z = -1 of luminance 1, from x = 0 to the left or, turned, from y = 0 downward.
+/// A wall of luminance 1 in the plane z = -1 that covers x < 0, or y < 0 if `turned`.
 std::shared_ptr<const Scene> half_wall(bool turned) {
     SceneDescription d;
     Mesh wall;
@@ -26,7 +26,7 @@ std::shared_ptr<const Scene> half_wall(bool turned) {
     return Scene::build(std::move(d));
 }
 
-/// Luminances of a frame of kWide x kHigh pixels, of a camera that goes along the part [begin, end] of `path`.
+/// Luminances of a frame of kWide x kHigh pixels by a camera that moves along the part [begin, end] of `path`.
 std::vector<float> expose(const LensKind& lens, const ShutterSettings& shutter, Vec3d path, int spp,
                           double begin = 0, double end = 1, double pixel_mm = 1) {
     const double times[] = {0, 1};
@@ -47,7 +47,7 @@ std::vector<float> expose(const LensKind& lens, const ShutterSettings& shutter, 
     return luminance;
 }
 
-/// Largest difference from what is expected of film points (mm across the edge), averaged over the pixel.
+/// Largest difference from the expected exposure of film points (mm across the edge), averaged over the pixel.
 double largest_error(const std::vector<float>& picture, bool columns,
                      const std::function<double(double position_mm, int x, int y)>& expected) {
     double largest = 0;
@@ -63,7 +63,7 @@ double largest_error(const std::vector<float>& picture, bool columns,
     return largest;
 }
 
-/// Integral of s from 0 to u.
+/// Integral of the opening curve s from 0 to u.
 double opened_until(const OpeningCurve& s, double u) {
     double sum = 0;
     for (int i = 0; i < 400; ++i) sum += s.at((i + 0.5) / 400 * std::clamp(u, 0.0, 1.0));
@@ -86,7 +86,8 @@ TEST_CASE("the blur of a moving edge is the integral of the shutter's opening") 
     const OpeningCurve measured = OpeningCurve::points(u, s);
     for (const OpeningCurve& curve : {OpeningCurve(), OpeningCurve::trapezoid(0.6), measured}) {
         const auto picture = expose(Pinhole{50}, settings_of(curve, 0.02), {kPath, 0, 0}, 1024);
-        // At time t the wall ends at -path (t - 1/2) of the camera, so a point at x mm sees it until then.
+        // At time t the wall's edge is at -path (t - 1/2) in the camera frame. A point at x mm sees the wall until the
+        // edge passes it.
         const auto law = [&](const OpeningCurve& c, double x) {
             return opened_until(c, 0.5 - x / (50 * kPath));
         };
@@ -100,7 +101,7 @@ TEST_CASE("the blur of a moving edge is the integral of the shutter's opening") 
 }
 
 TEST_CASE("a rolling shutter slants what moves, by speed x line time per line, in each direction") {
-    // The camera crosses the frame while 6 rows (24 columns) are exposed one after the other.
+    // The camera crosses the frame while 6 rows (24 columns) are exposed in sequence.
     for (const ScanOrder scan : {ScanOrder::top, ScanOrder::bottom, ScanOrder::left, ScanOrder::right}) {
         const bool columns = scan == ScanOrder::left || scan == ScanOrder::right;
         const int lines = columns ? kWide : kHigh;
@@ -128,7 +129,7 @@ TEST_CASE("a rolling shutter slants what moves, by speed x line time per line, i
 }
 
 TEST_CASE("through glass that disperses, each line of a rolling shutter is the picture of its own moment") {
-    // Wide open, axial colour sends other wavelengths some pixels of 4 um away, to other lines.
+    // Wide open, longitudinal chromatic aberration moves wavelengths by several pixels of 4 um, to other lines.
     ExactLensSettings settings;
     settings.f_stop = 2.2, settings.focus_distance_m = 1, settings.half_diagonal_mm = 1;
     const ExactLens lens(test::check_lens(false, 0.5), settings);
@@ -153,8 +154,8 @@ TEST_CASE("through glass that disperses, each line of a rolling shutter is the p
 }
 
 TEST_CASE("a leaf shutter's thin lens blurs what moves and what is out of focus together") {
-    // A point of the lens at radius r of it is open while a(t) >= r. In focus the edge's blur is that of
-    // the area: a^2.
+    // A leaf shutter uncovers the pupil radius r while a(t) >= r. In focus the exposure is weighted by the open area,
+    // a^2.
     ShutterSettings leaf = settings_of(OpeningCurve::trapezoid(0.7), 0.02);
     leaf.leaf = true;
     const OpeningCurve radius = leaf.curve;
@@ -168,13 +169,13 @@ TEST_CASE("a leaf shutter's thin lens blurs what moves and what is out of focus 
     CHECK(largest_error(sharp, false, [&](double x, int, int) {
               return area(0.5 - x / (50 * kPath));
           }) < 0.03);
-    // Focused at infinity, a point p of the lens sees the wall's edge p / 1 m further along.
+    // Focused at infinity, the ray through the pupil point p hits the wall at 1 m displaced by p.
     const ThinLens blurred{50, 60, std::numeric_limits<double>::infinity()};
     const auto joint = expose(blurred, leaf, {kPath, 0, 0}, 1024);
     const auto law = [&](double x) {
         double sum = 0;
         const int n = 60;
-        for (int i = 0; i < n; ++i)         // over the disc by strips of its x
+        for (int i = 0; i < n; ++i)         // quadrature over the disc in strips of x
             for (int j = 0; j < n; ++j) {
                 const double u = (i + 0.5) / n, a = radius.at(u), q = -1 + 2 * (j + 0.5) / n;
                 const double strip = std::abs(q) < a ? 2 * std::sqrt(a * a - q * q) * 2 / n / kPiD : 0;

@@ -7,11 +7,11 @@ namespace {
 
 constexpr int kMoments = 9;
 constexpr int kAcross = 16;   // steps across the frame
-// Shares by which rays that were not looked at may exceed those that were.
+// Safety factor for rays between the sampled rays.
 constexpr float kWider = 1.05f;
 constexpr float kLeastAngle = 2e-3f;   // rad
 
-/// Film points all over the frame, each with some points of the lens at some wavelengths.
+/// Film points across the frame, each combined with several lens points and wavelengths.
 std::vector<CameraSample> samples_of(const Sensor& sensor, float margin, float time) {
     std::vector<CameraSample> samples;
     const Vec2f size{float(sensor.width) + 2 * margin, float(sensor.height) + 2 * margin};
@@ -38,7 +38,7 @@ ViewCone view_at(const Camera& camera, const Sensor& sensor, float margin, float
     ViewCone view{{to_float(pose.origin), 0}, time};
     Vec3d sum{};
     for (const CameraRay& r : rays) sum = sum + to_double(r.ray.direction);
-    if (!(length(sum) > 0)) return view;   // all around
+    if (!(length(sum) > 0)) return view;   // rays in all directions
     const Vec3d axis = normalize(sum);
     double lowest = 1, farthest = 0;
     for (const CameraRay& r : rays) {
@@ -64,7 +64,7 @@ std::vector<ViewCone> frame_views(const Camera& camera, const Sensor& sensor, fl
         const float time = still ? 0.5f : float(i) / (kMoments - 1);
         views.push_back(view_at(camera, sensor, margin_px, time));
     }
-    // Views between two moments are no farther from one of them than they are from each other.
+    // A view between two sampled times differs from one of them by no more than these differ from each other.
     float turn = 0, step = 0, radius = 0;
     for (std::size_t i = 1; i < views.size(); ++i) {
         turn = std::max(turn, acos(std::clamp(dot(views[i - 1].axis, views[i].axis), -1.f, 1.f)));

@@ -1,4 +1,4 @@
-// frame_view.h -- what the frame may see of the world, as cones (light/view_cone.h).
+// frame_view.h -- cones that bound the field of view (light/view_cone.h).
 #pragma once
 #include <vector>
 
@@ -8,8 +8,8 @@
 
 namespace dg {
 
-/// Cones that hold the rays of all film points of the frame, and of a margin around it (px), at times close
-/// to all others: one where neither camera nor lens nor the world (`moves`) does anything meanwhile.
+/// Cones that contain the rays of all film points of the frame and of a margin around it (px), for a dense set of
+/// times. A single cone if neither the camera nor the lens nor the world (`moves`) changes.
 std::vector<ViewCone> frame_views(const Camera& camera, const Sensor& sensor, float margin_px,
                                   bool moves);
 

@@ -1,4 +1,4 @@
-// light_arrival.h -- light on its way to the lens, along one ray for all of its wavelengths.
+// light_arrival.h -- a light path's connection to the lens, along one ray for all wavelengths.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,8 @@
 
 namespace dg {
 
-/// From a point (m, world), past the surface that it lies on and that the ray leaves under this cosine, to where
-/// the ray from the lens comes out of what the camera clips. It ends before it starts (t_max < 0) if the point is
-/// clipped itself.
+/// Shadow ray from a point on a surface (m, world) to the near clip of the camera, along a ray from the lens. `cosine`
+/// is the angle at the surface, for the offset from it. t_max < 0 if the point itself is clipped.
 inline Ray shadow_ray(Vec3f at, float cosine, const Ray& from_lens) {
     const Vec3f b = from_lens.origin;
     const float largest = std::max(largest_coordinate(at), largest_coordinate(b));
@@ -27,13 +26,13 @@ inline Ray shadow_ray(Vec3f at, float cosine, const Ray& from_lens) {
 
 struct LightArrival {
     CameraRay lens;            // camera frame
-    Ray shadow;                // world: from where it comes to where rays of the lens start to see
-    Spectrum radiance{0.f};    // what a camera path would find there, had it the same density
-    std::optional<EmissionPoint> source;   // where it is uneven: radiance waits for the ray's cone on the film
-    double density = 0;        // of such light paths; LightWeight
+    Ray shadow;                // world: from the vertex to the camera's near clip
+    Spectrum radiance{0.f};    // radiance estimate of a camera path with the same density
+    std::optional<EmissionPoint> source;   // textured emitter: its radiance is looked up once the ray cone is known
+    double density = 0;        // of light paths, in the measure of LightWeight
     Wavelengths wavelengths;
     Vec2f u_pixel;
-    std::uint32_t sample = 0;  // index of the samples that it belongs to
+    std::uint32_t sample = 0;  // sample index that the light path belongs to
 };
 
 }  // namespace dg

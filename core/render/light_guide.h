@@ -1,4 +1,4 @@
-// light_guide.h -- what light paths are drawn with: found once for a picture, however many passes it takes.
+// light_guide.h -- samplers for light paths, built once per picture.
 #pragma once
 #include <memory>
 
@@ -12,12 +12,12 @@
 namespace dg {
 
 struct LightGuide {
-    EmissionSampler emission;    // of paths straight to the lens
-    EmissionRays rays;           // of those with bounces
+    EmissionSampler emission;    // for paths directly to the lens
+    EmissionRays rays;           // for paths with bounces
     PupilViewOverTime pupil;
-    float lens_radius = 0;       // m: all rays of the lens pass within it of the camera's origin
+    float lens_radius = 0;       // m: radius around the camera's origin that contains all rays through the lens
 
-    /// For the kinds of paths that the plan has; the reach of the pixels' filter in px. The scene outlives it.
+    /// Builds the samplers that `plan` needs. `filter_radius`: px. The scene must outlive the guide.
     LightGuide(const Scene& scene, const Camera& camera, const Sensor& sensor, float filter_radius,
                LightPlan plan);
 };

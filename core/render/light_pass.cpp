@@ -7,12 +7,12 @@
 namespace dg {
 namespace {
 
-constexpr int kSequence = -1;     // where pixels have their row, in the sampler's scramble
+constexpr int kSequence = -1;     // in place of a pixel row, in the sampler's scramble
 
 }  // namespace
 
 IndexRange light_path_range(double begin, double end, double per_sample, std::uint64_t seed) {
-    const double offset = hash_uniform(seed, 0x11947);   // so that parts of a path are right on average
+    const double offset = hash_uniform(seed, 0x11947);   // makes fractional numbers of paths correct on average
     const auto until = [&](double sample) {
         return std::uint64_t(std::floor(sample * per_sample + offset));
     };
@@ -37,8 +37,8 @@ void BouncedLightPass::draw(Workspace& work, std::uint64_t first, std::uint64_t 
               [&](std::uint64_t i) { paths_.follow(i, work.paths, work.counters.rays); });
 }
 
-/// Nothing for a path that cannot bring light. Order of drawing: time and wavelengths, the emitter, the point
-/// of the lens; then the point on the emitter. Lens and emitter are stratified together.
+/// Empty if the path carries no light. Sampling order: time and wavelengths, the emitter, the point of the lens, the
+/// point on the emitter. Lens and emitter are stratified jointly.
 std::optional<LightArrival> StraightLightPass::begin(std::uint64_t index) const {
     const auto& [scene, camera, film, settings, density] = picture_;
     PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index),
@@ -77,7 +77,7 @@ std::optional<LightArrival> StraightLightPass::begin(std::uint64_t index) const 
     return path;
 }
 
-/// To the film, each wavelength that has a way of its own.
+/// Traces the paths of a batch to the film, and splats or logs them.
 void LightPass::trace(Workspace& work) const {
     work.rays.clear(), work.nm.clear();
     for (const LightArrival& path : work.paths)
@@ -96,7 +96,7 @@ void LightPass::trace(Workspace& work) const {
     work.paths.clear();
 }
 
-/// Looks like a camera sample that draws this ray: of a texture, what its cone covers.
+/// Looks up emission with the ray cone of a camera sample that draws this ray.
 void LightPass::look(LightArrival& path, std::span<const Reprojection> landings) const {
     const auto hero = std::ranges::find_if(landings, [](const auto& l) { return l.etendue > 0; });
     if (hero == landings.end()) return;

@@ -1,6 +1,6 @@
-// light_pass.h -- light that goes from an emitter to the lens, followed from the emitter: straight, a point
-// on it and a ray toward the lens as it is seen from there, or over surfaces (light_path.h); traced to a film
-// point for each wavelength. What the lens lets through and nothing is in the way of lands in a pixel.
+// light_pass.h -- light tracing from emitters to the film. A path goes directly from a point on an emitter to a point
+// of the pupil as seen from there, or over surfaces (light_path.h). The lens is traced for each wavelength to a film
+// point, and unoccluded light that passes the lens is splatted.
 //
 // Sources: Veach 1997 (light tracing as one technique of many); Hanika and Dachsbacher 2014, Efficient Monte
 // Carlo Rendering with Realistic Lenses, EGSR; Schrade, Hanika, Dachsbacher 2016, Sparse high-degree
@@ -18,12 +18,12 @@
 
 namespace dg {
 
-/// Indices of the light paths that belong to sample indices [begin, end), `per_sample` of
-/// them to each: any split of the samples gives the same paths, and their mean number is right.
+/// Indices of the light paths of the sample indices [begin, end), on average `per_sample` per sample index. Any split
+/// of the samples gives the same paths.
 IndexRange light_path_range(double begin, double end, double per_sample, std::uint64_t seed);
 
-/// Light that light paths alone would add by one arrival, were it to one pixel; how much more densely camera samples
-/// draw the same; and RayOnFilm::spread().
+/// An arrival as the pilot records it: the light that it would add to a single pixel with light paths alone, the ratio
+/// of camera density to light density, and RayOnFilm::spread().
 struct LoggedSplat {
     Pixel pixel;
     Vec3f xyz;
@@ -32,7 +32,7 @@ struct LoggedSplat {
     std::uint32_t path;   // its index
 };
 
-/// Way from the lens to the film, shared by both kinds.
+/// Traces arrivals through the lens to the film; base of both kinds of light paths.
 class LightPass {
   public:
     static constexpr std::uint64_t kBlock = 4096;
@@ -42,14 +42,14 @@ class LightPass {
         std::vector<float> nm;
         std::vector<Reprojection> landings;
         RenderCounters counters;
-        std::vector<LoggedSplat>* log = nullptr;   // of a pilot, instead of the film
+        std::vector<LoggedSplat>* log = nullptr;   // receives arrivals instead of the film, in the pilot
     };
 
   protected:
-    /// `cone`: of camera samples. All outlives this.
+    /// `cone`: of camera samples. The arguments must outlive this.
     LightPass(const Picture& picture, const LightWeight& weight, const PixelCone& cone);
 
-    /// Calls begin(index) for [first, last), which appends to the paths of `work`, and traces them.
+    /// Calls begin(index) for [first, last), which appends paths to `work`, and traces them.
     template <typename Begin>
     void draw_each(Workspace& work, std::uint64_t first, std::uint64_t last, const Begin& begin) const {
         for (std::uint64_t i = first; i < last; ++i) {
@@ -71,10 +71,10 @@ class LightPass {
     void finish(Workspace& work, const LightArrival& path, std::span<const Reprojection> landings) const;
 
     const PixelCone& cone_;
-    int landings_;         // per path: one for each wavelength that has a way of its own
+    int landings_;         // landings per path: 1, or one for each wavelength if the lens disperses
 };
 
-/// Straight from an emitter to the lens.
+/// Light paths directly from an emitter to the lens.
 class StraightLightPass : public LightPass {
   public:
     StraightLightPass(const Picture& picture, const LightWeight& weight, const PixelCone& cone)
@@ -85,7 +85,7 @@ class StraightLightPass : public LightPass {
     std::optional<LightArrival> begin(std::uint64_t index) const;
 };
 
-/// With bounces.
+/// Light paths with bounces.
 class BouncedLightPass : public LightPass {
   public:
     BouncedLightPass(const Picture& picture, const LightWeight& weight, const PixelCone& cone)

@@ -3,14 +3,14 @@
 namespace dg {
 namespace {
 
-constexpr int kSequence = -2;   // beside that of paths straight to the lens
+constexpr int kSequence = -2;   // next to the sequence of paths directly to the lens (light_pass.cpp)
 
 }  // namespace
 
 struct LightPaths::Flight {
     LightWalk walk;
     Moment moment;
-    std::uint32_t sample;   // index of the samples that it belongs to
+    std::uint32_t sample;   // sample index that the light path belongs to
 };
 
 LightPaths::LightPaths(const Scene& scene, const Camera& camera, const RenderSettings& settings,
@@ -36,7 +36,7 @@ void LightPaths::follow(std::uint64_t index, std::vector<LightArrival>& arrivals
     }
 }
 
-/// Time and wavelengths, the choice of the light and the direction are stratified together.
+/// Stratifies time, wavelengths, the choice of the light and the direction jointly.
 std::optional<LightPaths::Flight> LightPaths::begin(std::uint64_t index) const {
     PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index),
                         settings_.seed);
@@ -49,7 +49,7 @@ std::optional<LightPaths::Flight> LightPaths::begin(std::uint64_t index) const {
     return Flight{*walk, moment, std::uint32_t(double(index) / settings_.light.m2)};
 }
 
-/// Light from a vertex to a point of the lens.
+/// Connects a vertex to a point of the lens.
 std::optional<LightArrival> LightPaths::connect(const Flight& flight, LightVertex& vertex,
                                                 const LightWalk::Random& u) const {
     const float time = flight.walk.ray().time;

@@ -1,5 +1,5 @@
-// light_path.h -- light paths with bounces (transport/light_walk.h), and what they send to the lens from each
-// surface. So caustics converge that a path from the camera meets by chance.
+// light_path.h -- light paths with bounces (transport/light_walk.h), connected to the lens at each surface. They make
+// caustics converge that camera paths hit only by chance.
 #pragma once
 #include <optional>
 #include <vector>
@@ -11,10 +11,10 @@
 
 namespace dg {
 
-/// Follows light path `index` and appends what is on its way to the lens.
+/// Traces light path `index` and appends its connections to the lens.
 class LightPaths {
   public:
-    /// All outlives this.
+    /// The arguments must outlive this.
     LightPaths(const Scene& scene, const Camera& camera, const RenderSettings& settings,
                const LightWeight& weight);
     void follow(std::uint64_t index, std::vector<LightArrival>& arrivals, std::uint64_t& rays) const;

@@ -1,4 +1,4 @@
-// Light paths past all kinds of materials: camera, light and both are one picture.
+// Light paths with all kinds of materials: camera paths, light paths and both render the same picture.
 #include "render/light_path_scenes.h"
 
 using namespace dg;
@@ -19,7 +19,7 @@ GltfMaterial solid(float roughness) {
 
 GltfMaterial sheet() {
     GltfMaterial m = plain(0, {0.9f, 0.9f, 0.9f});
-    m.transmission = 0.7f;   // the rest is a diffuse film of dust
+    m.transmission = 0.7f;   // 0.3 is diffuse, like dust
     return m;
 }
 
@@ -119,7 +119,7 @@ TEST_CASE("camera, light and both: a table with things of all materials on it") 
     Material mask{"mask", copper};
     mask.opacity = 0.4f;
     world("mask", World().add(1, mask, kBallPlace).light(kLamp));
-    // The table and a ball, so that several vertices of a path choose.
+    // Mixtures on the table and on a ball, so that several vertices of a path choose.
     World mixed({"table", plain()});
     mixed.d.materials.push_back({"mirror", ConductorMaterial{{0.9f, 0.9f, 0.9f}, 0}});
     mixed.d.materials.push_back({"glass", kGlass});

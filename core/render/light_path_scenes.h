@@ -1,5 +1,5 @@
-// light_path_scenes.h -- for tests only: a table under lamps, drawn by the camera's paths alone, by light
-// alone and by both, which must be one picture.
+// light_path_scenes.h -- for tests: a table under lamps, rendered by camera paths alone, by light paths alone and by
+// both. The three pictures must agree.
 #pragma once
 #include <doctest/doctest.h>
 
@@ -53,7 +53,7 @@ inline Blocks draw(const Scene& scene, const Camera& camera, const Look& look, T
         s.filter = look.filter;
         s.technique = technique;
         s.seed = std::uint64_t(100 * int(technique) + k + 1);
-        static const char* more = std::getenv("DG_EFFORT");   // times the samples
+        static const char* more = std::getenv("DG_EFFORT");   // factor on the number of samples
         static const std::uint32_t effort = more ? std::uint32_t(std::atoi(more)) : 1;
         s.sample_end = effort * (technique == Technique::both     ? look.both_spp
                                  : technique == Technique::camera ? look.camera_spp
@@ -88,7 +88,7 @@ inline SampleMoments whole(const Blocks& b) {
     return moments(values);
 }
 
-/// Smallest of the p-values of blocks and of the whole, corrected for their number.
+/// Smallest p-value among the blocks and the whole picture, with a Bonferroni correction.
 inline double equality(const Blocks& a, const Blocks& b, double factor = 1) {
     double least = 1;
     const auto compare = [&](SampleMoments x, SampleMoments y) {
@@ -132,7 +132,7 @@ inline Affine3f placed(Vec3f at, float scale, bool lies = false) {
     return a;
 }
 
-/// A table that faces up, before a wall: light that lands on one brightens the other.
+/// A table in front of a wall, which light each other.
 struct World {
     SceneDescription d;
     World(Material table = {"table", plain()}) {

@@ -1,5 +1,5 @@
-// Light paths with bounces: the camera's paths alone, light alone and both together are one picture, under
-// every kind of lamp and through every kind of camera.
+// Light paths with bounces: camera paths, light paths and both render the same picture, with every kind of light and
+// camera.
 #include "render/light_path_scenes.h"
 
 using namespace dg;
@@ -33,7 +33,7 @@ TEST_CASE("camera, light and both: through a pinhole, an exact lens, and a lens 
     Look one_wavelength;
     one_wavelength.settings.dispersion = Dispersion::end_secondary;
     check_one_picture(*scene, exact(), one_wavelength);
-    Look wide_filter;   // it has negative lobes, and reaches beyond the frame
+    Look wide_filter;   // has negative lobes and reaches beyond the frame
     wide_filter.filter = Filter(FilterKind::mitchell);
     check_one_picture(*scene, thin(), wide_filter);
 }
@@ -80,8 +80,8 @@ TEST_CASE("camera, light and both: few bounces") {
 }
 
 TEST_CASE("camera, light and both: light that all comes by way of a dark card behind the lens") {
-    // Light that leaves the card is weak enough for roulette, and nothing else lights the table: a density that is
-    // 6 % wrong, or roulette that is not made up for, is seen.
+    // Light from the card is dim enough for roulette, and nothing else lights the table. The test detects a density
+    // error of 6 %, and roulette without compensation.
     Affine3f card;
     card.x = {-0.7f, 0, 0}, card.y = {0, 0.7f, 0}, card.z = {0, 0, -0.7f};
     card.origin = {0, 0.5f, 1.75f};

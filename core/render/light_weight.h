@@ -1,5 +1,5 @@
-// light_weight.h -- how the camera's paths and light paths share what both find (transport/sharing/light_sharing.h), with
-// the lens that both go through.
+// light_weight.h -- MIS between camera paths and light paths (transport/sharing/light_sharing.h), with the densities of
+// the lens.
 #pragma once
 #include <memory>
 
@@ -14,8 +14,8 @@ namespace dg {
 
 class LightWeight : public LightSharing {
   public:
-    /// `plan`: paths per unit of the density's counts. `guide`: of an earlier pass of this picture, or null.
-    /// All else outlives this.
+    /// `plan`: paths per unit of the density's counts. `guide`: from an earlier pass of this picture, or null. The
+    /// remaining arguments must outlive this.
     LightWeight(const Scene& scene, const Camera& camera, const Sensor& sensor,
                 const FilmDensity& density, LightPlan plan, Technique technique,
                 std::shared_ptr<const LightGuide> guide);
@@ -29,7 +29,7 @@ class LightWeight : public LightSharing {
                 std::shared_ptr<const LightGuide> guide);
 
     const Camera& camera_;
-    std::shared_ptr<const LightGuide> guide_;   // null where nothing is drawn
+    std::shared_ptr<const LightGuide> guide_;   // null if no light paths are drawn
 };
 
 }  // namespace dg

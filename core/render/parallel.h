@@ -1,4 +1,4 @@
-// parallel.h -- tasks on as many threads as the user allows.
+// parallel.h -- runs tasks on a limited number of threads.
 #pragma once
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -11,11 +11,11 @@
 
 namespace dg {
 
-/// Runs run(0), ..., run(tasks - 1) on so many threads; 0: all. Throws if this thread's work was cancelled, which
-/// leaves tasks out.
+/// Calls run(0), ..., run(tasks - 1) on `threads` threads; 0: all. Throws if the calling thread's task group was
+/// cancelled, which skips tasks.
 template <typename Run>
 void parallel_tasks(int threads, std::int64_t tasks, const Run& run) {
-    // TBB keeps to the number of cores unless more is allowed.
+    // TBB limits itself to the number of cores unless a higher limit is set.
     std::optional<oneapi::tbb::global_control> allowed;
     if (threads > oneapi::tbb::this_task_arena::max_concurrency())
         allowed.emplace(oneapi::tbb::global_control::max_allowed_parallelism, threads);

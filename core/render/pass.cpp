@@ -7,7 +7,7 @@
 namespace dg {
 
 RenderCounters Passes::draw(int threads, const std::function<bool(double)>& progress) {
-    std::vector<std::int64_t> ends;   // of each pass among all blocks
+    std::vector<std::int64_t> ends;   // cumulative number of blocks
     for (const auto& pass : passes_) ends.push_back((ends.empty() ? 0 : ends.back()) + pass->count());
     const std::int64_t blocks = ends.back();
     std::atomic<std::int64_t> done{0};

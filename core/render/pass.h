@@ -1,8 +1,8 @@
-// pass.h -- one way in which light comes to the film: from the camera, or from emitters straight to the lens, over
-// surfaces, by ghosts, by what the lens scatters. A pass draws in blocks, in any order, by any thread; sums are
-// exact, so no bit depends on who drew which.
+// pass.h -- a technique that adds light to the film: camera paths, light paths directly to the lens or over surfaces,
+// ghosts, scattering in the lens. A pass is drawn in blocks, in any order and by any thread; film sums are exact, so
+// the result is bit-identical.
 //
-// Adding one: a class that Draws, and a line where passes are listed (render.cpp, emitter_passes.cpp).
+// To add a pass, write a class that satisfies Draws, and list it in render.cpp or emitter_passes.cpp.
 #pragma once
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
@@ -20,7 +20,7 @@
 
 namespace dg {
 
-/// Scene, camera, film and settings that passes share; they outlive the passes.
+/// Scene, camera, film and settings that passes share. They must outlive the passes.
 struct Picture {
     const Scene& scene;
     const Camera& camera;
@@ -32,8 +32,8 @@ struct Picture {
 /// Tiles or paths [0], ..., [1] - 1.
 using IndexRange = std::array<std::uint64_t, 2>;
 
-/// Draws what has indices [first, last), with the buffers of one thread; kBlock of them are one task. finish(threads), if
-/// there is one, comes after the last.
+/// Concept of a pass: draw(work, first, last) draws the indices [first, last) with the buffers of a thread; kBlock
+/// indices form a task. finish(threads) is optional and is called after the last task.
 template <typename D>
 concept Draws = requires(const D& drawer, typename D::Workspace& work, std::uint64_t index) {
     { D::kBlock } -> std::convertible_to<std::uint64_t>;
@@ -44,13 +44,13 @@ concept Draws = requires(const D& drawer, typename D::Workspace& work, std::uint
 class Pass {
   public:
     virtual ~Pass() = default;
-    /// Number of its blocks.
+    /// Number of blocks.
     virtual std::int64_t count() const = 0;
-    /// By any thread, each block once.
+    /// Draws a block; each block is drawn once, by any thread.
     virtual void draw(std::int64_t block) = 0;
-    /// Once, after the last block: what is not on the film yet comes there.
+    /// Adds buffered light to the film. Called once, after the last block.
     virtual void finish(int threads) = 0;
-    /// Sums over all threads, after the last block.
+    /// Sums over all threads. Called after the last block.
     virtual RenderCounters counters() const = 0;
 };
 
@@ -85,7 +85,7 @@ class PassOf final : public Pass {
 /// All passes of a picture.
 class Passes {
   public:
-    /// `args`: of the drawer, after the range of its indices.
+    /// Adds a pass over a range of indices; `args` are forwarded to its constructor.
     template <Draws D, typename... Args>
     void add(IndexRange range, Args&&... args) {
         passes_.push_back(std::make_unique<PassOf<D>>(range, std::forward<Args>(args)...));

@@ -9,7 +9,7 @@
 namespace dg {
 namespace {
 
-/// Marks what it draws.
+/// A pass that records the indices that it draws.
 class Marker {
   public:
     static constexpr std::uint64_t kBlock = 7;
@@ -48,7 +48,7 @@ TEST_CASE("each index of each pass is drawn once, by any number of threads") {
         std::vector<std::atomic<int>> a(100), b(100), none(100), c(100);
         Passes passes;
         passes.add<Marker>({0, 100}, a);
-        passes.add<Marker>({13, 41}, b);   // four whole blocks
+        passes.add<Marker>({13, 41}, b);   // four full blocks
         passes.add<Marker>({5, 5}, none);
         passes.add<Marker>({99, 100}, c);
         std::mutex mutex;

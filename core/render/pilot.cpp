@@ -11,25 +11,25 @@
 namespace dg {
 namespace {
 
-constexpr int kLeast = 3, kMost = 6;        // px along a side of a pilot's pixel, of pictures up to 9 MP
-constexpr double kBlocks = 600;             // of a small picture
-constexpr double kMostBlocks = 1 << 18;     // of a large one, so that the pilot does not grow with it: as many as paths
-constexpr std::uint32_t kSamples = 2;       // of each: the fewest that tell a variance
+constexpr int kLeast = 3, kMost = 6;        // px: side of a pilot pixel, for pictures up to 9 MP
+constexpr double kBlocks = 600;             // target number of pilot pixels for small pictures
+constexpr double kMostBlocks = 1 << 18;     // limit for large pictures, which bounds the cost of the pilot
+constexpr std::uint32_t kSamples = 2;       // per pilot pixel: the fewest that estimate a variance
 constexpr int kPixelsPerPath = 16;
 constexpr std::uint64_t kFewestPaths = 2048, kMostPaths = 1 << 18;
 constexpr std::uint64_t kPathsPerTask = 1024;
 constexpr std::uint64_t kOwnRandom = 0x9170;
 
-// Prices in rays, one of which with all that happens where it ends takes 350 to 750 ns. Measured on the
-// table of scenes/lens_scenes/photographer.py with bench/night.py's cameras; they need not be sharp, as
-// the error is flat about the best plan.
+// Prices in rays; a ray with shading takes 350 to 750 ns. Measured on the table of
+// scenes/lens_scenes/photographer.py with the cameras of bench/night.py. Rough values suffice, as the error is flat
+// around the best plan.
 constexpr double kSample = 0.4;             // a camera sample without its rays and its lens
-constexpr double kPath = 0.4;               // a light path without these
-constexpr double kConnected = 0.5;          // rays of a light path with bounces that go to the lens
-constexpr double kSplat = 1.3;              // what arrives, beside its shadow ray
-constexpr double kShare = 0.5;              // where a camera sample leaves something to light: its own landing
-constexpr double kShareOfRay = 0.7;         // and to light with bounces: densities of the way back, per ray
-double price_of(const LensKind& lens) {     // one sample through it, all wavelengths
+constexpr double kPath = 0.4;               // a light path without its rays and its lens
+constexpr double kConnected = 0.5;          // connections of a light path with bounces to the lens, per ray
+constexpr double kSplat = 1.3;              // a splat without its shadow ray
+constexpr double kShare = 0.5;              // MIS of a camera sample with light paths: its reprojection
+constexpr double kShareOfRay = 0.7;         // MIS with bounced light paths: reverse densities, per ray
+double price_of(const LensKind& lens) {     // a sample through the lens, all wavelengths
     return std::holds_alternative<ExactLens>(lens) ? 0.8 : 0.1;
 }
 
@@ -40,7 +40,7 @@ int block_side(const Sensor& sensor) {
     return std::max(side, int(std::ceil(std::sqrt(pixels / kMostBlocks))));
 }
 
-/// The picture in larger pixels.
+/// Settings of the picture with larger pixels.
 RenderSettings coarse(const RenderSettings& picture, int side) {
     RenderSettings s = picture;
     s.window = s.hole = {};
@@ -101,7 +101,7 @@ class Pilot {
         return std::clamp(std::uint64_t(pixels()) / kPixelsPerPath, kFewestPaths, kMostPaths);
     }
 
-    /// Looks at what camera samples find beside what light paths would bring straight from emitters.
+    /// Mean and variance of light that camera samples find, without the light that direct light paths would find.
     std::vector<PilotBlock> look() {
         const Sensor& sensor = coarse_.sensor;
         Film film(FilmLayout{sensor.width, sensor.height});
@@ -117,10 +117,10 @@ class Pilot {
         return blocks;
     }
 
-    /// Light paths of one kind, and the rays of one of them.
+    /// Draws light paths of one kind, and measures the rays per path.
     template <typename LightPassKind>
     std::vector<PilotArrival> fly(const LightWeight& weight, double& rays_per_path) const {
-        Film nowhere(FilmLayout{1, 1});   // all is logged
+        Film nowhere(FilmLayout{1, 1});   // arrivals are logged instead of splatted
         const LightPassKind pass({scene_, camera_, nowhere, settings_, density_}, weight, cone_);
         const std::uint64_t tasks = (paths() + kPathsPerTask - 1) / kPathsPerTask;
         std::vector<std::vector<LoggedSplat>> found(tasks);
@@ -132,7 +132,7 @@ class Pilot {
             pass.draw(work, first, std::min(first + kPathsPerTask, paths()));
             rays[task] = work.counters.rays;
         });
-        std::vector<PilotArrival> all;   // in the order of the paths, whatever thread drew them
+        std::vector<PilotArrival> all;   // in the order of the paths, independent of threads
         double ray_count = 0;
         for (std::uint64_t t = 0; t < tasks; ++t) {
             for (const LoggedSplat& s : found[t])

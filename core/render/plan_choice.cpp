@@ -10,10 +10,11 @@ namespace dg {
 namespace {
 
 constexpr double kSure = 2;   // standard errors
-// A sample with light paths may cost four times what it costs without: who asks for so many samples has a time
-// in mind. More would seldom gain a third: where light paths do all, cost x error falls as 1 + 1 / (cost - 1).
+// Limit of a sample's cost with light paths, relative to its cost without them: users choose the number of samples with
+// a time in mind. A higher limit seldom gains a third: if light paths find everything, cost x error is proportional to
+// 1 + 1 / (cost - 1).
 constexpr double kMostCost = 4;
-// Largest cost of paths with bounces over that of the camera: rare light asks for paths without end.
+// Limit of the cost of bounced paths relative to camera samples: rare light would demand an unlimited number of paths.
 constexpr double kMostBounced = 1;
 
 struct Candidate {
@@ -25,14 +26,13 @@ class Judge {
     Judge(const NoiseCurves& straight, const NoiseCurves& bounced, double rest, const PlanCosts& costs)
         : straight_(straight), bounced_(bounced), rest_(rest), costs_(costs) {}
 
-    /// How much less cost x error `a` has than `b`, in logarithms. `bounces`: beside what the camera's few
-    /// samples have seen, there is what light paths with bounces have found. Some of it is the same; that
-    /// may be counted twice, as how much can't be told, and the gain is then told too small.
+    /// log of cost x error of `b` over cost x error of `a`. `bounces`: adds the light found by bounced light paths to
+    /// the light seen by camera samples. Their overlap is unknown and may count twice, which underestimates the gain.
     double gain(Candidate a, Candidate b, bool bounces, int left_out = kAll) const {
         return std::log(cost(b) * error(b, bounces, left_out)) -
                std::log(cost(a) * error(a, bounces, left_out));
     }
-    /// By the estimates without each group (jackknife): no single path carries it.
+    /// Whether the gain is significant, by the jackknife over groups of paths.
     bool sure(Candidate a, Candidate b, bool bounces) const {
         std::array<double, kGroups> gains;
         for (int g = 0; g < kGroups; ++g) gains[g] = gain(a, b, bounces, g);
@@ -42,7 +42,7 @@ class Judge {
         variance *= double(kGroups - 1) / kGroups;
         return gain(a, b, bounces) - kSure * std::sqrt(variance) > std::log(kWorth);
     }
-    /// The best of those that cost no more than a plan may.
+    /// The best candidate within the cost limits.
     Candidate best(bool bounces) const {
         Candidate found;
         for (int k2 = 0; k2 < (bounces ? kCandidates : 1); ++k2)
@@ -57,7 +57,7 @@ class Judge {
         const double others = rest_ + (bounces ? bounced_[g][c.bounced] : 0);
         return std::max(1e-300, straight_[g][c.straight] + others);
     }
-    /// A sample of every pixel, with its light paths.
+    /// Cost of one sample of every pixel with its light paths.
     double cost(Candidate c) const {
         const double sharing = c.straight + c.bounced > 0 ? costs_.sharing : 0;
         return costs_.camera + sharing + costs_.straight * paths_of(c.straight) + bounced_cost(c);
@@ -72,7 +72,7 @@ class Judge {
 
     const NoiseCurves& straight_;
     const NoiseCurves& bounced_;
-    double rest_;   // variance of what the camera finds beside the straight
+    double rest_;   // variance of the camera's light without direct emission
     const PlanCosts& costs_;
 };
 

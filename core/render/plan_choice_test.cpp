@@ -12,26 +12,27 @@ using namespace dg;
 
 namespace {
 
-constexpr double kPixels = 36;   // of a block
+constexpr double kPixels = 36;   // per block
 constexpr int kBlocks = 400, kColumns = 20;
 
 float uniform(std::uint64_t a, std::uint64_t b) { return float(hash_uniform(a, b)); }
 
-/// A lamp whose disc covers `lit` blocks evenly: one camera sample in 1 / p meets it there.
+/// A lamp with a disc that covers `lit` blocks evenly; a camera sample in these blocks hits the lamp with probability
+/// p.
 struct Disc {
     int lit;
-    double p;        // that a camera sample of a lit pixel meets the lamp
-    double mean;     // of a lit pixel
-    double share;    // of light paths that reach the film
+    double p;        // probability that a camera sample of a lit pixel hits the lamp
+    double mean;     // value of a lit pixel
+    double share;    // fraction of light paths that reach the film
 
     double pixels() const { return lit * kPixels; }
-    /// A light path adds to one lit pixel: density share / pixels of being that one's.
+    /// A light path adds to one lit pixel, to each with probability share / pixels.
     PilotArrival arrival(std::uint32_t block, std::uint32_t path = 0) const {
-        const double light = share / pixels();           // per path, of hitting one certain pixel
+        const double light = share / pixels();           // probability per path of hitting a given pixel
         const float y = float(mean / light);
         return {block, {y, y, y}, float(p / light), 1, path};
     }
-    double variance(double m) const {   // of a sample, summed over the lit pixels
+    double variance(double m) const {   // variance of a sample, summed over the lit pixels
         const double light = share / pixels(), y = mean / light, r = p / light;
         return pixels() * light * y * y / (r + m) - pixels() * std::pow(mean * r / (r + m), 2);
     }
@@ -57,10 +58,10 @@ TEST_CASE("plan choice: second moments of both techniques are what drawing them 
     for (const double m : {0.0, 64.0, 512.0}) {
         const PilotArrival a = disc.arrival(0);
         const double weight_light = m / (a.ratio + m), weight_camera = a.ratio / (a.ratio + m);
-        std::vector<double> values;   // of one pixel, samples of camera and light together
+        std::vector<double> values;   // one pixel, with camera sample and light paths
         for (int i = 0; i < 200'000; ++i) {
             double v = uniform(3, i) < disc.p ? disc.mean / disc.p * weight_camera : 0;
-            // PilotArrivals at one pixel: binomial, here few enough to be drawn as one chance.
+            // The number of arrivals at a pixel is binomial; it is so small that one Bernoulli trial approximates it.
             const double chance = m * disc.share / disc.pixels();
             double left = chance;
             for (int k = 0; left > 0; ++k, left -= 0.25)
@@ -69,7 +70,7 @@ TEST_CASE("plan choice: second moments of both techniques are what drawing them 
         }
         const auto found = moments(values);
         CHECK(found.mean == doctest::Approx(disc.mean).epsilon(0.04));
-        // A chance of 1/4 at most: its variance is that of independent arrivals less an eighth or so.
+        // With a probability of 1/4 at most, the variance is about an eighth below that of independent arrivals.
         const double expected = disc.variance(m) / disc.pixels();
         CHECK(found.variance == doctest::Approx(expected).epsilon(0.2));
     }
@@ -80,9 +81,9 @@ TEST_CASE("plan choice: rare lamps get as many paths as the closed form wants") 
     const float rest = 1e-3f;
     const std::vector<PilotBlock> blocks = even_blocks(0.1f, rest);
     const std::vector<PilotArrival> all = disc.arrivals(40'000);
-    for (const double cost : {2e-6, 2e-5, 2e-4}) {   // at most four times a sample's cost
+    for (const double cost : {2e-6, 2e-5, 2e-4}) {   // at most four times the cost of a sample
         const LightPlan plan = choose_plan(picture(blocks), {all, 40'000}, {}, {.straight = cost, .bounced = cost});
-        const double dark = kBlocks * kPixels * rest / (0.01 + 0.01);   // a few blocks more, as good as all
+        const double dark = kBlocks * kPixels * rest / (0.01 + 0.01);   // counts the few lit blocks, too
         const double lit = std::pow(2.1, 2) + 0.01;
         double best = 1e300, wanted = 0;
         for (double m = 256; cost * m < 3; m *= 2) {
@@ -100,7 +101,7 @@ constexpr PlanCosts kCheap{.straight = 1e-5, .bounced = 1e-5};
 TEST_CASE("plan choice: no paths where they gain nothing") {
     CHECK(choose_plan(picture(even_blocks(1, 0.3f)), {}, {}, kCheap).off());
 
-    // A broad light that every camera sample meets.
+    // A large emitter that every camera sample hits.
     const Disc broad{kBlocks, 1.0, 1.0, 0.5};
     const std::vector<PilotArrival> many = broad.arrivals(20'000);
     CHECK(choose_plan(picture(even_blocks(0, 0.1f)), {many, 20'000}, {}, kCheap).off());
@@ -113,20 +114,20 @@ TEST_CASE("plan choice: what the camera finds rarely is noise, however few sampl
     for (int b = 0; b < kBlocks; b += 11) sparks[b] = {{1, 1, 1}, {2, 2, 2}};
     const Disc disc{6, 1.0 / 40, 2.0, 0.4};
     const std::vector<PilotArrival> all = disc.arrivals(40'000);
-    CHECK(choose_plan(picture(sparks), {all, 40'000}, {}, kCheap).off());   // not of sparks, which remain
+    CHECK(choose_plan(picture(sparks), {all, 40'000}, {}, kCheap).off());   // fireflies would remain
     CHECK(choose_plan(picture(even_blocks(0.1f, 1e-3f)), {all, 40'000}, {}, kCheap).m1 > 0);
 }
 
 TEST_CASE("plan choice: no paths for one that was lucky") {
     const std::vector<PilotBlock> blocks = even_blocks(1, 0.01f);
-    // Bright for the camera that it meets once in a while: any plan would gain, did others find it too.
+    // A bright path that the camera finds rarely: plans would gain if more than one light path found it.
     std::vector<PilotArrival> lucky;
     for (int k = 0; k < 10; ++k) lucky.push_back({0, {1e5f, 1e5f, 1e5f}, 200, 1, 77});
     CHECK(choose_plan(picture(blocks), {}, {lucky, 20'000}, kCheap).off());
     CHECK(choose_plan(picture(blocks), {lucky, 20'000}, {}, kCheap).off());
     for (int k = 0; k < 10; ++k) lucky[k].path = k * 2000;
     CHECK(choose_plan(picture(blocks), {}, {lucky, 20'000}, kCheap).m2 > 0);
-    // Brighter, and so rare that few pictures have one of them.
+    // Brighter paths that occur only in few pictures.
     for (PilotArrival& a : lucky) a.ratio = 1;
     CHECK(choose_plan(picture(blocks), {}, {lucky, 20'000}, kCheap).off());
 

@@ -8,13 +8,13 @@
 namespace dg {
 namespace {
 
-constexpr float kDark = 0.01f;      // of relative errors: (value^2 + kDark)
-constexpr double kFirst = 256;      // the least plan that is no trifle
-constexpr double kSeenIn = 64;      // samples per pixel
-constexpr int kReachOfSamples = 2, kReachOfArrivals = 1;   // blocks whose mean serves the one amid them
-constexpr int kEnoughArrivals = 4;  // to tell a block's mean alone
+constexpr float kDark = 0.01f;      // of relative errors: variance / (value^2 + kDark)
+constexpr double kFirst = 256;      // light paths of the smallest plan
+constexpr double kSeenIn = 64;      // samples per pixel of a typical picture
+constexpr int kReachOfSamples = 2, kReachOfArrivals = 1;   // radius of the blocks that are averaged, in blocks
+constexpr int kEnoughArrivals = 4;  // for the mean of a single block
 
-/// Calls visit(index, into) for each block and those around it, up to `reach` away.
+/// Calls visit(index, into) for each block and its neighbours up to `reach` blocks away.
 template <typename Visit>
 void around(std::size_t blocks, int columns, int reach, Visit visit) {
     const int rows = int(blocks) / columns;
@@ -30,7 +30,7 @@ struct Sum {
     int blocks = 0;
 };
 
-/// Sums of each block and of those around it.
+/// Sums over each block and its neighbours.
 std::vector<Sum> wide_sums(std::span<const Sum> sums, int columns, int reach) {
     std::vector<Sum> wide(sums.size());
     around(sums.size(), columns, reach, [&](std::size_t from, std::size_t into) {
@@ -40,7 +40,7 @@ std::vector<Sum> wide_sums(std::span<const Sum> sums, int columns, int reach) {
     return wide;
 }
 
-/// A sum over groups of paths, leaving each out in turn, and none.
+/// Sums over groups of paths, without each group in turn, and over all groups.
 std::array<double, kGroups + 1> left_out(const std::array<double, kGroups>& groups) {
     std::array<double, kGroups + 1> sums;
     sums[kAll] = std::accumulate(groups.begin(), groups.end(), 0.0);
@@ -61,12 +61,12 @@ class CurveMaker {
     }
 
   private:
-    /// Group of a light path: neighbours in its sequence are stratified together, so groups are runs of them.
+    /// Group of a light path: a run of consecutive indices, since these are stratified jointly.
     int group_of(const PilotArrival& a) const {
         return int(std::uint64_t(a.path) * kGroups / arrivals_.paths);
     }
 
-    /// S(m) and C(m)^2, the latter of products of different groups, which are independent.
+    /// Adds S(m) - C(m)^2. C(m)^2 is estimated by products of different groups, which are independent.
     void add(NoiseCurves& curves, int k) {
         const double m = paths_of(k);
         std::ranges::fill(sums_, std::array<Vec3f, kGroups>{});
@@ -78,7 +78,7 @@ class CurveMaker {
             Vec3f& sum = sums_[a.block][g];
             sum = sum + a.value * float(double(a.ratio) / both);
         }
-        double square = 0;   // of the sum of all groups
+        double square = 0;   // square of the sum of all groups
         for (std::size_t b = 0; b < sums_.size(); ++b) {
             Vec3f all{0, 0, 0};
             for (const Vec3f& sum : sums_[b]) all = all + sum;
@@ -89,7 +89,7 @@ class CurveMaker {
             }
         }
         const auto second = left_out(moments), same = left_out(squares);
-        const double paths = double(arrivals_.paths) / kGroups;   // of a group
+        const double paths = double(arrivals_.paths) / kGroups;   // per group
         for (int g = 0; g <= kAll; ++g) {
             const double n = g == kAll ? kGroups : kGroups - 1;
             const double with = g == kAll ? square : square - 2 * products[g] + squares[g];
@@ -100,7 +100,7 @@ class CurveMaker {
 
     const PilotArrivals& arrivals_;
     std::span<const Vec3f> weights_;
-    double pixels_;   // of a block
+    double pixels_;   // per block
     std::vector<std::array<Vec3f, kGroups>> sums_;
 };
 
@@ -143,11 +143,11 @@ double rest_of(const PilotPicture& picture, std::span<const Vec3f> weights) {
 
 std::vector<PilotArrival> seen(const PilotArrivals& arrivals, std::span<const Vec3f> weights) {
     std::vector<PilotArrival> all(arrivals.all.begin(), arrivals.all.end());
-    const auto brightness = [&](const PilotArrival& a) {   // of a camera's find, in relative units
+    const auto brightness = [&](const PilotArrival& a) {   // relative brightness for the camera
         return double(dot(a.value * a.value, weights[a.block])) / (double(a.ratio) * a.ratio);
     };
     std::ranges::sort(all, std::greater{}, brightness);
-    double found = 0;   // in a picture
+    double found = 0;   // expected number in a picture
     std::size_t k = 0;
     while (k < all.size() && found < 1) found += kSeenIn * all[k++].ratio / double(arrivals.paths);
     if (k > 0 && found >= 1) --k;

@@ -1,5 +1,5 @@
-// plan_curves.h -- how noisy a picture would be with so many light paths, for many numbers of them; and how sure
-// that is. The formulas are in plan_choice.h.
+// plan_curves.h -- estimated noise of a picture as a function of the number of light paths, with jackknife estimates.
+// The formulas are in plan_choice.h.
 #pragma once
 #include <array>
 
@@ -8,30 +8,29 @@
 namespace dg {
 
 inline constexpr int kCandidates = 34;   // 0, then powers of sqrt(2)
-inline constexpr int kGroups = 8;        // of the pilot's light paths
-inline constexpr int kAll = kGroups;     // the estimate that leaves none of them out
+inline constexpr int kGroups = 8;        // jackknife groups of the pilot's light paths
+inline constexpr int kAll = kGroups;     // index of the estimate from all groups
 
-/// Number of light paths.
+/// Number of light paths per sample of a candidate.
 double paths_of(int candidate);
 
 /// Sum over pixels and channels of V(m) / (mean^2 + 0.01), for every candidate.
 using Curve = std::array<double, kCandidates>;
-/// Without each group of paths, and with all.
+/// Curves without each group of paths, and with all groups.
 using NoiseCurves = std::array<Curve, kGroups + 1>;
 
-/// The mean of each block with what arrives straight from emitters, as 1 / (mean^2 + 0.01). Where few samples
-/// tell it, of those around it too: else what is rare and bright would be judged by itself, and never seem
-/// much brighter than its surroundings.
+/// Weights 1 / (mean^2 + 0.01) of the blocks, for the mean including direct arrivals. Means of few samples are averaged
+/// with the neighbours: else a rare bright sample would raise the mean that it is compared with.
 std::vector<Vec3f> weights_of(const PilotPicture& picture, const PilotArrivals& straight);
 
-/// Curve's value for what the camera finds beside the straight.
+/// The curve's value for light that only the camera finds.
 double rest_of(const PilotPicture& picture, std::span<const Vec3f> weights);
 
-/// Without the brightest of what the camera finds, as long as a picture of 64 samples would seldom have one of
-/// them: sparks that are not there disturb nobody.
+/// The arrivals without the brightest that a picture of 64 samples would seldom contain: fireflies that do not occur
+/// need no light paths.
 std::vector<PilotArrival> seen(const PilotArrivals& arrivals, std::span<const Vec3f> weights);
 
-/// `pixels`: of a block.
+/// Noise of the arrivals for each number of light paths. `pixels`: per block.
 NoiseCurves curves_of(const PilotArrivals& arrivals, std::span<const Vec3f> weights, double pixels);
 
 }  // namespace dg

@@ -5,10 +5,10 @@
 namespace dg {
 namespace {
 
-// Up to this radius (px) each pixel gets its share of a splat: with the default filter that has 0.45 of the
-// variance of a pixel that is chosen, integral of f^2 over that of f. Wider ones would cost more than that.
+// Up to this filter radius (px) a splat is distributed over all pixels: with the default filter this has 0.45 of the
+// variance of a chosen pixel (integral of f^2 over integral of f). Wider filters would cost more time than they save.
 constexpr float kWideFilter = 2.5f;
-constexpr int kWidestBox = 12;   // px: up to here the wavelengths of a path are one value per pixel
+constexpr int kWidestBox = 12;   // px: in smaller boxes, the wavelengths of a path are added as one value per pixel
 
 }  // namespace
 
@@ -76,15 +76,15 @@ float RayOnFilm::spread() const {
 void RayOnFilm::splat_all(Film& film, Spectrum light, const Wavelengths& wavelengths,
                           std::uint32_t sample, Layer layer) const {
     if (landings_.size() == 1) return splat_box(film, light, wavelengths, sample, layer, 0, 1);
-    // By where they land in the frame: in whatever region of it, a pixel's sums have the same bits.
+    // Uses positions in the frame, so that a pixel's sums are bit-identical for every region that is drawn.
     const float most = kWidestBox - 1 - 2 * film_density_.filter().radius();
     if (high_.x - low_.x <= most && high_.y - low_.y <= most)
         return splat_box(film, light, wavelengths, sample, layer, 0, landings_.size());
-    for (std::size_t i = 0; i < landings_.size(); ++i)   // far from each other
+    for (std::size_t i = 0; i < landings_.size(); ++i)   // landings far apart
         if (reaches(i)) splat_box(film, light, wavelengths, sample, layer, i, i + 1);
 }
 
-/// The pixels that some of the landings reach.
+/// Bounds of the pixels in reach of landings [first, last).
 Footprint::Box RayOnFilm::box(std::size_t first, std::size_t last) const {
     Footprint::Box all{1 << 30, 1 << 30, -(1 << 30), -(1 << 30)};
     for (std::size_t i = first; i < last; ++i) {
@@ -96,7 +96,7 @@ Footprint::Box RayOnFilm::box(std::size_t first, std::size_t last) const {
     return all;
 }
 
-/// Splats one wavelength by itself: the colour is the same in all pixels.
+/// Splats a single wavelength, which has the same colour in all pixels.
 void RayOnFilm::splat_color(Film& film, Spectrum light, const Wavelengths& wavelengths, std::uint32_t sample,
                             Layer layer, const Footprint& at) const {
     const Footprint::Box box = at.box();
@@ -116,7 +116,7 @@ void RayOnFilm::splat_color(Film& film, Spectrum light, const Wavelengths& wavel
     }
 }
 
-/// Splats landings [first, last), one value for each pixel.
+/// Splats landings [first, last) as one value per pixel.
 void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelengths,
                           std::uint32_t sample, Layer layer, std::size_t first,
                           std::size_t last) const {

@@ -1,5 +1,5 @@
-// ray_on_film.h -- where the wavelengths of one scene ray land on the film, seen from either side: how
-// densely camera samples draw the ray, and what a light path along it adds to which pixels.
+// ray_on_film.h -- film points of the wavelengths of a scene ray: the density with which camera samples draw the ray,
+// and the splats of a light path along it.
 #pragma once
 #include <array>
 #include <optional>
@@ -14,30 +14,31 @@ namespace dg {
 
 class RayOnFilm {
   public:
-    /// One landing: all wavelengths land alike. Those that no camera sample could draw count as stopped.
+    /// A single landing serves all wavelengths. Landings that no camera sample could draw count as blocked.
     RayOnFilm(const FilmDensity& density, const Sensor& sensor,
               std::span<const Reprojection> landings, float time);
 
     /// Density of camera samples, per m2 sr of rays and sample index; see camera_first_ray.h.
     double camera_density() const { return density_; }
-    /// Some pixel of the region is in reach.
+    /// Whether the filter of a pixel of the region covers a landing.
     bool in_reach() const { return in_reach_; }
-    /// Something passes the lens, but all of it out of reach of the whole frame.
+    /// Whether light passes the lens, but no landing is in reach of the frame.
     bool off_frame() const { return off_frame_; }
 
-    /// Adds radiance x response to all pixels whose filter it reaches. Of a wide filter to one pixel per
-    /// wavelength, chosen by its share with u in [0,1)^2: the same u for all, so that most are one value.
+    /// Adds radiance x response to all pixels with a filter that covers the landing. For wide filters, adds each
+    /// wavelength to a single pixel, chosen by its share with u in [0,1)^2; all wavelengths use the same u, so that
+    /// most choose the same pixel.
     void splat(Film& film, Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
                std::uint32_t sample, Layer layer = Layer::splats) const;
 
-    /// Light that comes to one pixel.
+    /// Light added to a pixel.
     struct Splat {
         Pixel pixel{};
         Spectrum light{0.f};
     };
-    /// Chooses what splat() adds, whatever the filter, as camera samples do; returns how many there are.
+    /// Chooses one pixel per wavelength for every filter width, as camera samples do; returns the number of splats.
     int choose(Spectrum radiance, Vec2f u, std::array<Splat, kWavelengths>& splats) const;
-    /// The sum of squares of what splat() adds, over that of what is chosen.
+    /// Sum of squares of the values added by splat(), relative to choose().
     float spread() const;
 
   private:
@@ -54,7 +55,7 @@ class RayOnFilm {
     const FilmDensity& film_density_;
     std::span<const Reprojection> landings_;
     std::array<std::optional<Footprint>, kWavelengths> at_;
-    Vec2f low_{1e9f, 1e9f}, high_{-1e9f, -1e9f};   // px: of those that land on the frame
+    Vec2f low_{1e9f, 1e9f}, high_{-1e9f, -1e9f};   // px: bounds of the landings on the frame
     double density_ = 0, exposure_;
     bool in_reach_ = false, off_frame_ = false;
 };

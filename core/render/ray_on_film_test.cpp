@@ -1,4 +1,4 @@
-// ray_on_film_test.cpp -- what a splat adds to pixels, and which light paths belong to which samples.
+// ray_on_film_test.cpp -- splats of light paths, and the assignment of light paths to samples.
 #include "render/ray_on_film.h"
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ Reprojection landing(Vec2f px, float response = 3) {
     return {kSensor.mm_from_px(px), 1, 1, 0.5f, response};
 }
 
-/// Means of XYZ's Y per pixel over splats at random film points within the frame and 4 px around it.
+/// Mean Y per pixel of splats at random film points within the frame and 4 px around it.
 std::vector<double> mean_splats(const FilmDensity& density, int n) {
     Film film(kRegion);
     for (int y = 0; y < 6; ++y)
@@ -54,7 +54,7 @@ TEST_CASE("splats bring each pixel the integral of its filter, whatever the filt
             double sum = 0, expected = 0;
             for (std::size_t i = 0; i < 48; ++i) {
                 const double n = even ? 1 : counts[i];
-                const double wanted = n * 3 * filter.absolute_integral();   // response x what divides
+                const double wanted = n * 3 * filter.absolute_integral();   // response x normalization
                 if (n == 0) CHECK(means[i] == 0);
                 CHECK(std::abs(means[i] - wanted) < 0.4 * wanted + 1e-9);
                 sum += means[i], expected += wanted;
@@ -87,7 +87,7 @@ TEST_CASE("wavelengths land on film points of their own; those that are stopped 
     CHECK(RayOnFilm(density, kSensor, out, 0).off_frame());
     const FilmLayout crop{2, 2, 0, 0, {Layer::splats}};
     const FilmDensity cropped(filter, crop);
-    const std::array beside{landing({5, 5})};   // in the frame, but not in the crop
+    const std::array beside{landing({5, 5})};   // inside the frame, outside the crop
     CHECK_FALSE(RayOnFilm(cropped, kSensor, beside, 0).off_frame());
     CHECK_FALSE(RayOnFilm(cropped, kSensor, beside, 0).in_reach());
 }

@@ -19,17 +19,17 @@ namespace {
 
 constexpr int kBatchSize = 1024;   // camera samples per call of the lens: fills the SIMD lanes
 
-/// One camera sample on its way from random numbers to the film.
+/// A camera sample.
 struct Sample {
     Pixel pixel;
     std::uint32_t index;
     Vec2f px;              // film point
-    float weight;          // of filter and shutter
+    float weight;          // product of filter and shutter weights
     PathSampler sampler;
     Wavelengths wavelengths;
 };
 
-/// The camera's own samples, tile by tile.
+/// Draws camera samples, tile by tile.
 class CameraPass {
   public:
     static constexpr std::uint64_t kBlock = 1;
@@ -37,7 +37,7 @@ class CameraPass {
         std::vector<Sample> samples;
         std::vector<CameraSample> camera_samples;
         std::vector<CameraRay> rays;
-        std::vector<CameraRay> traced_rays;   // of the samples that passed, each some times
+        std::vector<CameraRay> traced_rays;   // of samples that passed the lens, for each traced wavelength
         std::vector<float> traced_nm;
         std::vector<Reprojection> reprojections;
         RenderCounters counters;
@@ -51,12 +51,12 @@ class CameraPass {
         const bool exact = std::holds_alternative<ExactLens>(camera_.lens);
         reprojected_ = exact && settings_.dispersion == Dispersion::reproject;
         end_secondary_ = exact && settings_.dispersion == Dispersion::end_secondary;
-        // Where light paths share in what is found, the hero's own landing is needed too.
+        // MIS with light paths needs the hero's reprojection, too.
         first_traced_ = weight.off() ? 1 : 0;
         end_traced_ = reprojected_ ? kWavelengths : weight.off() ? 0 : 1;
     }
 
-    /// Tiles [first, last).
+    /// Draws tiles [first, last).
     void draw(Workspace& work, std::uint64_t first, std::uint64_t last) const {
         for (std::uint64_t tile = first; tile < last; ++tile) draw_tile(work, Tiles(drawn_.region())[tile]);
     }
@@ -74,8 +74,8 @@ class CameraPass {
         draw_batch(work);
     }
 
-    /// Order of drawing: pixel and film point, the time within the pixel's window, wavelengths; the lens
-    /// as it is at that time follows for the whole batch, then the pose.
+    /// Draws the pixel and film point, the time within the pixel's window, and wavelengths. The lens and the pose at
+    /// that time are applied to the whole batch later.
     void add_sample(Workspace& work, Pixel pixel, std::uint32_t index) const {
         const PathSampler sampler(pixel.x, pixel.y, index, settings_.seed);
         const CameraRandom u = sampler.camera();
@@ -106,7 +106,7 @@ class CameraPass {
         work.samples.clear(), work.camera_samples.clear();
     }
 
-    /// Film points of wavelengths [first_traced_, end_traced_), for the rays that passed.
+    /// Computes the film points of wavelengths [first_traced_, end_traced_) for the rays that passed the lens.
     void reproject(Workspace& work) const {
         work.traced_rays.clear(), work.traced_nm.clear();
         for (std::size_t i = 0; i < work.rays.size(); ++i) {
@@ -145,8 +145,8 @@ class CameraPass {
         }
     }
 
-    /// Light on its way to one pixel, by `to_film`. Coverage is that of a white world's luminance, so that a pixel's
-    /// share is that of the light that it would have.
+    /// Light added to a pixel, weighted by `to_film`. Coverage is weighted like the luminance of a uniform white world,
+    /// so that it is the covered fraction of the pixel's light.
     template <typename ToFilm>
     CameraLight arrived(const Sample& sample, const Sight& sight, Spectrum weight, const ToFilm& to_film) const {
         CameraLight all{.light = to_film(sight.light)};
@@ -159,7 +159,7 @@ class CameraPass {
         return all;
     }
 
-    /// Coverage by object: instances by their index, then sphere lights.
+    /// Adds coverage by object ID: instances by index, followed by sphere lights.
     void add_objects(CameraLight& all, const Covers& covers) const {
         static_assert(CameraLight::kMostObjects >= Covers::kMost);
         for (const Cover& c : covers) {
@@ -169,16 +169,15 @@ class CameraPass {
         }
     }
 
-    /// Each wavelength at its own film point; those of one pixel are added as one value. Light that only
-    /// this hero could have found (Radiance::hero) has no share in the heuristic over four heroes that
-    /// weighs the landings: another hero would have been bent elsewhere in the scene, so its technique
-    /// has the density 0 for this path. It has the plain weight of the hero's own film sample.
+    /// Splats each wavelength at its film point; wavelengths in the same pixel are added as one value. Radiance::hero
+    /// is excluded from the balance heuristic over four heroes: another hero would have been refracted elsewhere in the
+    /// scene, so its technique has density 0 for this path. This light has the weight of the hero's film sample alone.
     void splat(const Sample& sample, const CameraRay& camera_ray, std::span<const Reprojection> others,
                const Sight& sight, Spectrum own) const {
         const Hero hero{sample.px, sample.pixel, camera_ray.ray.time, camera_ray.weight, camera_ray.aim_weight};
         PathSampler sampler = sample.sampler;
         const Landings landings = land(density_, settings_.sensor, hero, others, sampler.next_1d());
-        for (const Landing& l : landings) {   // the hero's own pixel comes first
+        for (const Landing& l : landings) {   // the hero's pixel is first
             const auto to_film = [&](const Radiance& r) { return r.hero * own + r.shared * l.weight; };
             film_.add_shared(l.pixel.x, l.pixel.y, sample.index, sample.wavelengths,
                              arrived(sample, sight, l.weight, to_film));
@@ -207,7 +206,7 @@ class CameraPass {
     const PixelCone& cone_;
     PathSettings path_;
     std::uint32_t instances_;
-    bool reprojected_, end_secondary_;   // what becomes of secondary wavelengths
+    bool reprojected_, end_secondary_;   // treatment of secondary wavelengths
     int first_traced_, end_traced_;
 };
 

@@ -1,4 +1,4 @@
-// render.h -- the one page where camera, scene and film meet.
+// render.h -- renders a scene with a camera to a film: the only place that combines all three.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -25,30 +25,29 @@ class ScatterGuide;  // scatter_guide.h
 /// Ghosts, drawn from the emitters (flare_pass.h); 0 paths per sample index, for the whole frame: none.
 struct FlarePlan {
     double per_sample = 0;
-    int order = 2;   // reflections: 2, or 4 as well
-    bool highlights = true;   // of what other things send to the lens, too
-    bool learned = true;   // false: all ghosts and the whole front alike, the plain reference
-    bool maps = true;      // of the ghosts of small sources (flare_sheets.h); false: paths for all, the reference
-    std::shared_ptr<const FlareGuide> guide;   // of this picture; null: each call makes its own
+    int order = 2;   // number of reflections: 2, or 2 and 4
+    bool highlights = true;   // includes ghosts of bright reflections in the scene
+    bool learned = true;   // false: uniform choice of ghosts and of points on the front, the reference
+    bool maps = true;      // ghosts of small sources from maps (flare_sheets.h); false: by paths, the reference
+    std::shared_ptr<const FlareGuide> guide;   // for this picture; null: each call builds one
 };
 
-/// Light that the lens's own parts scatter, drawn from the emitters (scatter_pass.h).
+/// Light scattered inside the lens, traced from the emitters (scatter_pass.h).
 struct ScatterPlan {
     double per_sample = 0;   // paths per sample index, for the whole frame; 0: none
-    bool nodes = true;       // smooth light comes to nodes some pixels apart (scatter_nodes.h); false: the reference
-    std::shared_ptr<const ScatterGuide> guide;   // of this picture; null: each call makes its own
+    bool nodes = true;       // smooth light goes to nodes several pixels apart (scatter_nodes.h); false: the reference
+    std::shared_ptr<const ScatterGuide> guide;   // for this picture; null: each call builds one
 };
 
-/// Treatment of the other wavelengths of a path once glass has bent the hero's ray.
+/// Treatment of secondary wavelengths behind a dispersive lens.
 enum class Dispersion {
-    reproject,       // each at its own film point (dispersion.h)
-    end_secondary,   // dropped; the hero alone, at four times its weight: the plain reference
+    reproject,       // each has a separate film point (dispersion.h)
+    end_secondary,   // terminated; the hero has four times the weight: the reference
 };
 
-/// A round in which each pixel draws samples of its own: count[i] of them from index begin[i] on, i over
-/// the rows of the film's region. It can be drawn in parts, [first, last) of kParts: of each pixel's
-/// samples the same share, so that the picture has the right mean after each part, and the bits of the
-/// whole do not depend on the parts.
+/// A round with a number of samples for each pixel: count[i] samples from index begin[i] on, with i row by row over the
+/// film's region. A round can be drawn in parts [first, last) of kParts, each with the same fraction of every pixel's
+/// samples. The picture has the correct mean after each part, and the result is bit-identical for any split.
 struct SampleRound {
     static constexpr std::uint32_t kParts = 1 << 16;
     std::span<const std::uint32_t> begin, count;
@@ -66,24 +65,25 @@ struct SampleRound {
 struct RenderSettings {
     Sensor sensor;
     std::uint32_t sample_begin = 0, sample_end = 1;
-    SampleRound round;                          // instead of these, unless empty
-    PixelBox window, hole;                      // of the film only what lies in one and not in the other; empty: all
+    SampleRound round;                          // replaces sample_begin and sample_end unless empty
+    PixelBox window, hole;                      // draws only pixels inside `window` and outside `hole`; empty: all
     std::uint64_t seed = 0;
     int threads = 0;                            // 0: all
-    Shutter shutter;                            // its duration is the scene's interval
+    Shutter shutter;                            // its duration is the time interval of the scene
     PathSettings path;
     Filter filter;
     Dispersion dispersion = Dispersion::reproject;
     LightPlan light;                            // none: off
     Technique technique = Technique::both;
-    std::shared_ptr<const LightGuide> light_guide;   // made for this plan; null: each call makes its own
-    FlarePlan flare;                            // needs an exact lens, and a film with a layer for it
-    ScatterPlan scatter;                        // the same; it is in the layer of flare
-    std::shared_ptr<const PlateLight> plate;    // a photograph of the set; null: its materials send their own light
+    std::shared_ptr<const LightGuide> light_guide;   // for this plan; null: each call builds one
+    FlarePlan flare;                            // needs an exact lens and a film with a flare layer
+    ScatterPlan scatter;                        // needs an exact lens and a film with a flare layer
+    std::shared_ptr<const PlateLight> plate;    // a photograph of the set; null: the set's materials light objects
 };
 
 /// Draws samples [sample_begin, sample_end) of every pixel of the film's region, or a part of a round.
-/// `progress` is called from worker threads with the fraction done; returning false stops early (the film is then invalid).
+/// `progress` is called from worker threads with the fraction done; if it returns false, rendering stops and the film
+/// is invalid.
 RenderCounters render(const Scene& scene, const Camera& camera, Film& film,
                       const RenderSettings& settings,
                       const std::function<bool(double)>& progress);

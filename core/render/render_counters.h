@@ -1,4 +1,4 @@
-// render_counters.h -- counts of rays and paths: for statistics, never for the picture.
+// render_counters.h -- counts of rays and paths, for statistics; they do not affect the picture.
 #pragma once
 #include <cstdint>
 
@@ -7,11 +7,11 @@ namespace dg {
 struct RenderCounters {
     std::uint64_t camera_rays = 0, stopped_rays = 0, rays = 0;
     std::uint64_t light_paths = 0;
-    std::uint64_t splats_off_film = 0;   // light that passed the lens and missed the frame
+    std::uint64_t splats_off_film = 0;   // light paths that passed the lens and missed the frame
     std::uint64_t flare_paths = 0;
-    std::uint64_t flare_rays = 0, flare_hits = 0;   // one for each wavelength; those that came to the frame
-    std::uint64_t flare_arrivals = 0;   // drawn from maps of ghosts
-    std::uint64_t scatter_paths = 0, scatter_hits = 0;   // hits: with some wavelength
+    std::uint64_t flare_rays = 0, flare_hits = 0;   // rays: one per wavelength; hits: rays that reached the frame
+    std::uint64_t flare_arrivals = 0;   // samples from maps of ghosts
+    std::uint64_t scatter_paths = 0, scatter_hits = 0;   // hits: paths with a wavelength that reached the frame
 
     friend bool operator==(const RenderCounters&, const RenderCounters&) = default;
 };

@@ -21,7 +21,7 @@ RenderSettings small(std::uint32_t begin, std::uint32_t end) {
 
 FilmLayout layout() { return {.width = 20, .height = 14, .layers = {Layer::aovs, Layer::splats, Layer::coverage}}; }
 
-/// All words of a film's sums.
+/// All bytes of a film's sums.
 std::vector<std::byte> bits(const Film& film) {
     std::vector<std::byte> all;
     for (const std::string& part : film.state_parts()) {
@@ -33,7 +33,7 @@ std::vector<std::byte> bits(const Film& film) {
 
 std::shared_ptr<const Scene> lamp_scene() { return World().light(kLamp).scene(); }
 
-/// Under a sky of this colour and nothing else.
+/// A scene of a uniform sky.
 std::shared_ptr<const Scene> sky_scene(Rgb color) {
     SceneDescription d;
     d.environment = Environment::constant(color);
@@ -114,7 +114,7 @@ TEST_CASE("a white world is 1 in every pixel of a pinhole, and its light, depth 
     const Affine3d pose = camera.world_from_camera.at(0);
     int seen = 0;
     for (std::size_t i = 0; i < alpha.size(); ++i) {
-        if (alpha[i] < 1 || depth[i] == 0) continue;   // a ball of light has no depth
+        if (alpha[i] < 1 || depth[i] == 0) continue;   // sphere lights have no depth
         ++seen;
         const double along = -dot(Vec3d{x[i], y[i], z[i]} - pose.origin, pose.z);
         CHECK(depth[i] == doctest::Approx(along).epsilon(1e-4));

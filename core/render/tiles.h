@@ -1,4 +1,4 @@
-// tiles.h -- the region that is drawn in squares of pixels: neighbours share geometry in the caches.
+// tiles.h -- splits the drawn region into square tiles: neighbouring pixels share geometry in the caches.
 #pragma once
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// flare_aim.h -- a flare path without what it is drawn by: from a point of an emitter to a place on the front of
-// the lens, and from there by one ghost to the film. All of it is exact.
+// flare_aim.h -- exact flare paths: from a point on an emitter to a point on the front of the lens, and through a
+// ghost's surfaces to the film. The densities that choose source, ghost and front point are the caller's.
 #pragma once
 #include <optional>
 #include <span>
@@ -18,24 +18,24 @@ struct FlareArrival {
     CameraRay lens;           // camera frame; on the first surface
     int ghost = 0;
     Wavelengths wavelengths;
-    Spectrum radiance{0.f};   // or what stands for it of lights without size
-    double density = 0;       // of such paths, per m2 sr
-    Vec2f at{};               // where it was aimed at, [-1, 1)^2
+    Spectrum radiance{0.f};   // or the equivalent for delta lights
+    double density = 0;       // of the path, per m2 sr
+    Vec2f at{};               // target on the front, [-1, 1)^2
     EmitterPoint from{};
 };
 
-/// From where it comes to where rays of the lens start; world.
+/// Shadow ray from the emitter to the origin of the lens's ray; world.
 Ray flare_shadow(const EmitterPoint& from, const Ray& from_lens);
 
-/// Light from the world along the way of a path, as its wavelengths may reach the film each in its place.
-/// `sampler`: for paths through the scene, which light that other things reflect needs; `rays` counts them all.
+/// Radiance of the scene along a flare path, for wavelengths that reach separate film points. `sampler`: for the path
+/// tracer, which reflected light needs. `rays`: counter of all rays.
 Spectrum flare_light(const Scene& scene, const Camera& camera, const PathSettings& settings,
                      const FlareArrival& path, PathSampler sampler, std::uint64_t& rays);
 
 class FlareAim {
   public:
-    /// An exact lens; it and the scene outlive this. Of the settings: sensor, shutter, reach of the filter, and
-    /// for highlights how paths go on in the scene.
+    /// `camera` has an exact lens; it and the scene must outlive this. Uses sensor, shutter and filter radius of the
+    /// settings, and for highlights the path settings.
     FlareAim(const Scene& scene, const Camera& camera, const RenderSettings& settings);
 
     bool is_of(const Scene& scene, const Camera& camera) const {
@@ -44,53 +44,53 @@ class FlareAim {
     const Scene& scene() const { return scene_; }
     const Camera& camera() const { return camera_; }
     int ghosts() const { return int(mirrors_.size()); }
-    /// Those by two reflections: the first of them.
+    /// Number of ghosts with two reflections; they come first.
     int pairs() const { return pairs_; }
     const Mirrors& mirrors(int ghost) const { return mirrors_[ghost]; }
-    /// The lens as it is at first, and a ghost's way through it.
+    /// Ghosts of the lens in its first state.
     const GhostLens& ghost_lens() const { return states_.front().ghosts; }
     const std::vector<GhostStep>& steps(int ghost) const { return states_.front().steps[ghost]; }
     const EmitterPoints& sources() const { return sources_; }
-    /// Bright spots among what other things send to the lens, and how many rays it took to find them.
+    /// Number of bright spots among reflections in the scene, and the number of rays that the survey took.
     int spots() const { return spots_; }
     std::uint64_t survey_rays() const { return survey_rays_; }
     double front_radius() const { return radius_; }   // m
     const Sensor& sensor() const { return sensor_; }
     const Shutter& shutter() const { return shutter_; }
-    /// Reflectance of a ghost's mirrors together, straight on.
+    /// Product of the reflectances of a ghost's mirrors at normal incidence.
     double reflectance(int ghost) const;
-    /// Share of some rays from a source to the front that are free; never 0, as few are looked at.
+    /// Estimated unoccluded fraction of rays from a source to the front; never 0, as it comes from few rays.
     double visible_share(int source) const;
 
-    /// From random numbers by purpose.
+    /// Random numbers of a path.
     struct Random {
         float select;
         FlareLambda lambda;
         Vec2f point;
         Moment moment;
     };
-    /// Toward a place of the square that holds the front as it is seen from the point, [-1, 1)^2; `pdf`: of
-    /// source, ghost and place, per unit of the square. Nothing if the path cannot bring light.
+    /// Aims at a point `at` of the square [-1, 1)^2 that bounds the front as seen from the emitter point. `pdf`:
+    /// density of source, ghost and `at`, per unit of the square. Empty if the path carries no light.
     std::optional<FlareArrival> aim(int source, int ghost, Vec2f at, double pdf, const Random& u) const;
 
-    /// A point of a source as the lens has it: camera frame, m; a unit direction where it is at infinity.
+    /// A point of a source in the camera frame, m; a unit direction for sources at infinity.
     struct SourcePoint {
         Vec3d place;
         bool at_infinity;
-        Rgb light;   // that it brings to a unit of the square's middle, with the chance by which it was drawn taken out
+        Rgb light;   // illuminance at the center of the square, divided by the density of the point
         EmitterPoint from;
     };
     std::optional<SourcePoint> point(int source, float select, Vec2f u, float time) const;
 
-    /// Which of the lens's states is in place at a time.
+    /// Index of the lens state at a time.
     std::size_t state_at(float time) const;
-    /// All by one ghost through one state.
+    /// Traces rays through a ghost of a lens state.
     void trace(std::size_t state, int ghost, std::span<const CameraRay> rays, std::span<const float> nm,
                std::span<Reprojection> out) const;
 
-    /// Where on the frame a landing is, px; nothing outside of the filter's reach.
+    /// Film position of a landing, px; empty beyond the filter radius around the frame.
     std::optional<Vec2f> on_frame(const Reprojection& landing, float time) const;
-    /// Tells RayOnFilm which of a path's landings arrive; how many do.
+    /// Marks the landings that reach the frame, for RayOnFilm; returns their number.
     int mark_arrived(std::span<Reprojection> landings, float time) const;
 
   private:
@@ -100,13 +100,13 @@ class FlareAim {
         std::vector<std::vector<GhostStep>> steps;
     };
 
-    /// From a place of the front toward where light comes from.
+    /// Ray from a point of the front toward the source.
     struct Way {
         Affine3d pose;
         Vec3d start, direction;   // camera frame, m
-        Vec3f world;              // direction
+        Vec3f world;              // direction in the world
         float time;
-        double spread;            // times densities of the point and of m2 of the square: per m2 sr of rays
+        double spread;            // converts densities of source point and square (1/m2) to 1/(m2 sr) of rays
         Ray ray() const {
             return {.origin = to_float(pose.point(start)), .direction = world, .time = time};
         }
@@ -123,11 +123,11 @@ class FlareAim {
     Sensor sensor_;
     Shutter shutter_;
     float reach_;                  // px
-    std::vector<float> times_;     // of the states; empty: one
+    std::vector<float> times_;     // of the states; empty: a single state
     std::vector<State> states_;
     std::vector<Mirrors> mirrors_;
     int pairs_ = 0;
-    Vec3d center_{};               // camera frame, m: of the front
+    Vec3d center_{};               // of the front; camera frame, m
     double radius_ = 0;
     int spots_ = 0;
     std::uint64_t survey_rays_ = 0;

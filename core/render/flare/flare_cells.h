@@ -1,12 +1,11 @@
-// flare_cells.h -- through which part of the front lens, and at which wavelengths, light of one emitter and ghost
-// comes: what places on the front and wavelengths are drawn by.
+// flare_cells.h -- sampling distribution of front lens points and wavelengths for a pair of emitter and ghost.
 #pragma once
 #include "math/distribution.h"
 #include "render/flare/flare_lambda.h"
 
 namespace dg {
 
-/// Rectangle in the square that holds the front; all of it by default.
+/// Rectangle in the square that bounds the front; the whole square by default.
 struct FlareRectangle {
     Vec2f low{-1, -1}, size{2, 2};
 
@@ -19,21 +18,22 @@ struct FlareRectangle {
     }
 };
 
-/// Cells of a rectangle of the square. A share of the paths goes elsewhere: half of it to what was first thought
-/// to hold the light, most of the rest to where any light of the source comes in, and some to all of the square.
+/// Cells of a rectangle of the square. A defensive share of the paths is drawn outside the learned cells: half of it
+/// uniformly in the rectangle of the first estimate, most of the rest in the rectangle where light of the source
+/// enters, and the remainder in the whole square.
 struct FlareCells {
     FlareRectangle inner, outer, front;
-    Distribution2D weights;             // empty: evenly
-    DiscreteDistribution wavelengths;   // over [0, 1) of Wavelengths::at; empty: evenly
+    Distribution2D weights;             // empty: uniform
+    DiscreteDistribution wavelengths;   // over [0, 1) of Wavelengths::at; empty: uniform
     float blind = 1;
 
-    /// Where nothing is known but where light comes in.
+    /// Uniform over the rectangle where light enters.
     static FlareCells evenly(const FlareRectangle& front);
 
     Vec2f sample(Vec2f u) const;
     double pdf(Vec2f at) const;         // per unit of the square
 
-    /// Shares that are drawn without knowledge of cells.
+    /// Defensive shares of the two rectangles.
     static constexpr float kOuter = 0.5f, kFront = 0.4f;
 
     FlareLambda lambda(float u) const;

@@ -26,7 +26,7 @@ FlareCells some_cells() {
 TEST_CASE("places on the front are drawn by their density") {
     constexpr int kCount = 1 << 16;
     for (const FlareCells& cells : {some_cells(), FlareCells::evenly({{-0.8f, -0.6f}, {1.4f, 1.2f}})}) {
-        double areas[3] = {}, all = 0;   // of the rectangles and of the square, from what is drawn in them
+        double areas[3] = {}, all = 0;   // areas of rectangles and square, estimated from samples
         for (int i = 0; i < kCount; ++i) {
             PathSampler sampler(1, 2, std::uint32_t(i), 3);
             const Vec2f at = cells.sample(sampler.next_2d());

@@ -20,7 +20,7 @@ FlareGuide::FlareGuide(std::shared_ptr<const FlareAim> aim, const RenderSettings
                                     : naive_flare(*aim_)) {}
 
 double FlareGuide::paths_share() const {
-    constexpr double kLeast = 0.1;   // for the ghosts by four reflections of what has maps
+    constexpr double kLeast = 0.1;   // for ghosts with four reflections of sources with maps
     if (!has_paths()) return 0;
     if (sheets_.empty()) return 1;
     double own = 0, all = 0;

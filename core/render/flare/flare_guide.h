@@ -1,9 +1,9 @@
-// flare_guide.h -- what ghosts are drawn by, found once for a picture: a pair of source and ghost, and a place on
+// flare_guide.h -- importance sampling of ghosts, learned once per picture: pairs of source and ghost, and points on
 // the front of the lens.
 //
-// Few pairs bring light to the frame, and each through a small part of the front; both are learned from exact
-// rays (flare_learn.h). A share of the paths is drawn without that knowledge, so that what the rays missed costs
-// noise and no bias.
+// Few pairs send light to the frame, each through a small part of the front; both are learned from exact rays
+// (flare_learn.h). A defensive share of the paths is drawn without this knowledge, so that errors of the learned
+// distribution cause noise and no bias.
 #pragma once
 #include <memory>
 #include <optional>
@@ -18,17 +18,17 @@ class FlareGuide {
   public:
     FlareGuide(std::shared_ptr<const FlareAim> aim, const RenderSettings& settings);
 
-    /// Nothing shines, or nothing reflects: there is no flare.
+    /// No flare: no light source, or no reflecting surface.
     bool empty() const { return !has_paths() && sheets_.empty(); }
-    /// There is something that maps do not have.
+    /// Whether there are pairs without maps.
     bool has_paths() const { return !known_.pairs.empty(); }
-    /// Share of all paths that it gets: as its sources have of all light, and some more; 0: there is nothing.
+    /// Share of all paths for pairs without maps: their share of the light with a lower bound; 0 if there are none.
     double paths_share() const;
     const FlareSheets& sheets() const { return sheets_; }
     const FlareAim& aim() const { return *aim_; }
     std::shared_ptr<const FlareAim> shared_aim() const { return aim_; }
 
-    /// From random numbers by purpose; nothing if the path cannot bring light.
+    /// Random numbers of a path.
     struct Random {
         float pair, select, lambda;
         Vec2f front, point;

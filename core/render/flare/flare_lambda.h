@@ -1,5 +1,4 @@
-// flare_lambda.h -- the random numbers of four wavelengths: where in [0, 1) of Wavelengths::at, and how densely
-// they are drawn there.
+// flare_lambda.h -- random numbers in [0, 1) of four wavelengths (Wavelengths::at), and their densities.
 #pragma once
 #include <algorithm>
 
@@ -11,7 +10,7 @@ struct FlareLambda {
     Spectrum u{0.f}, density{1.f};
 
     FlareLambda(Spectrum at, Spectrum times) : u(at), density(times) {}
-    /// Evenly: one in each quarter, and in any of them the hero.
+    /// Uniform: one wavelength in each quarter; the hero is in the quarter of its random number.
     FlareLambda(float hero) {  // NOLINT: one random number is four wavelengths
         const int quarter = std::min(int(hero * kWavelengths), kWavelengths - 1);
         for (int k = 0; k < kWavelengths; ++k)

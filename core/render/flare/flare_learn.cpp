@@ -10,26 +10,26 @@
 namespace dg {
 namespace {
 
-constexpr double kBlindPair = 0.02;   // share of paths whose source and ghost are not learned
-constexpr float kBlindCell = 0.02f;   // and whose place on the front is not, at least
-constexpr float kFewHits = 8;         // a pair with as few is drawn blindly
-constexpr double kPooled = 0.1;       // share of a source's paths that goes to ghosts as those of all sources do
-// Rays of looks, all pairs together: where each source lights the frame at all; by which ghosts and through
-// about which part; and all that is drawn by. Of the last two so many for each pixel, within limits.
+constexpr double kBlindPair = 0.02;   // defensive share of paths with a pair that is not learned
+constexpr float kBlindCell = 0.02f;   // least defensive share of paths with a front point that is not learned
+constexpr float kFewHits = 8;         // a pair with fewer hits is drawn by the defensive distribution
+constexpr double kPooled = 0.1;       // share of a source's paths that uses the mean ghost weights of all sources
+// Numbers of rays for all pairs together, in three passes: the rectangle of each source; ghosts and their approximate
+// rectangles; the final distributions. The last two are per pixel, within limits.
 constexpr double kScouts = 1 << 16;
-constexpr int kFewestScouts = 8, kMostScouts = 256;   // of one pair
+constexpr int kFewestScouts = 8, kMostScouts = 256;   // per pair
 struct Rays {
     double least, most, per_pixel;
 };
 constexpr Rays kWide{1 << 20, 1 << 21, 2}, kFine{1 << 18, 1 << 20, 1};
-constexpr int kFewest = 32, kMost = 4096;   // of one pair, of the second look
-constexpr int kSearched = 256, kZooms = 5, kZoomRays = 64;   // who misses by so many is searched, ever closer
-constexpr double kReflected = 0.3;    // root of what a shadow ray costs, over what a path through the scene does
-constexpr int kLook = 256;            // where cells should lie
-constexpr std::size_t kMostPairs = 4096;    // that are looked at for the last time
+constexpr int kFewest = 32, kMost = 4096;   // per pair, in the second pass
+constexpr int kSearched = 256, kZooms = 5, kZoomRays = 64;   // search: least rays without a hit; steps; rays per step
+constexpr double kReflected = 0.3;    // root of the cost of a shadow ray over the cost of a path through the scene
+constexpr int kLook = 256;            // rays that find the rectangle of the cells
+constexpr std::size_t kMostPairs = 4096;    // limit of pairs in the last pass
 constexpr int kLeastAcross = 8, kMostAcross = 64;   // cells
-constexpr int kPerCell = 2, kRounds = 4;   // rays of a cell; of the last look
-constexpr int kGrowths = 20;   // of what is looked at
+constexpr int kPerCell = 2, kRounds = 4;   // rays per cell; rounds of the last pass
+constexpr int kGrowths = 20;   // limit of enlargements of a rectangle
 
 class Learner {
   public:
@@ -41,12 +41,12 @@ class Learner {
   private:
     int sources() const { return aim_.sources().count(); }
     int ghosts() const { return aim_.ghosts(); }
-    /// Another one draws source x ghosts + ghost.
+    /// Whether maps draw the pair, source x ghosts + ghost.
     bool leaves(std::size_t pair) const {
         const std::size_t source = pair / std::size_t(ghosts());
         return source < mapped_.size() && mapped_[source] && int(pair) % ghosts() < aim_.pairs();
     }
-    /// Another one draws all of its ghosts.
+    /// Whether maps draw all ghosts of the source.
     bool leaves_source(int source) const { return leaves(std::size_t(source + 1) * ghosts() - 1); }
     double count(const Rays& rays) const;
     double share_of_pair(int source) const;
@@ -66,9 +66,9 @@ class Learner {
     const FlareAim& aim_;
     int threads_;
     const std::vector<bool>& mapped_;
-    std::vector<double> strength_, visible_;   // of sources
+    std::vector<double> strength_, visible_;   // per source
     double all_strength_ = 0;
-    std::vector<FlareRectangle> front_;        // through which they light the frame
+    std::vector<FlareRectangle> front_;        // per source: the rectangle where its light enters
 };
 
 FlareKnowledge Learner::learn() {
@@ -104,12 +104,12 @@ double Learner::count(const Rays& rays) const {
     return std::clamp(rays.per_pixel * aim_.sensor().width * aim_.sensor().height, rays.least, rays.most);
 }
 
-/// Share of all rays that a ghost of a source gets: by the light of the source.
+/// Share of all rays for a ghost of a source, in proportion to the light of the source.
 double Learner::share_of_pair(int source) const {
     return all_strength_ > 0 ? strength_[source] / all_strength_ / ghosts() : 0;
 }
 
-/// Where light of a source comes in by any ghost.
+/// Rectangle where light of a source enters, for any ghost.
 FlareRectangle Learner::scout(int source) const {
     const int count = std::clamp(int(kScouts * share_of_pair(source)), kFewestScouts, kMostScouts);
     FlareFound all{{source, 0, 0}};
@@ -117,7 +117,8 @@ FlareRectangle Learner::scout(int source) const {
     return all.hits.empty() ? FlareRectangle{} : all.narrowed();
 }
 
-/// Searches ghosts of which the frame sees a tiny part, through a tiny part of the front: around the nearest ray.
+/// Searches a ghost that is visible only through a tiny part of the front, around the ray that came nearest to the
+/// frame.
 FlareFound Learner::search(FlareFound found) const {
     for (int i = 0; i < kZooms && found.hits.empty() && std::isfinite(found.near_px); ++i) {
         const FlareRectangle& old = found.probe.where;
@@ -128,7 +129,7 @@ FlareFound Learner::search(FlareFound found) const {
     return found;
 }
 
-/// By every pair.
+/// Probes every pair.
 std::vector<FlareFound> Learner::look_wide() {
     parallel_tasks(threads_, sources(), [&](std::int64_t s) {
         visible_[s] = aim_.visible_share(int(s)), strength_[s] = aim_.sources().strength(int(s)) * visible_[s];
@@ -159,7 +160,7 @@ FlareTiles Learner::tiles_of(const std::vector<FlareFound>& found) const {
     return tiles;
 }
 
-/// Pairs that are to be looked at again, those that weigh most first.
+/// Pairs to probe again, by decreasing weight.
 std::vector<std::size_t> Learner::order_of(const std::vector<double>& weights) const {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < weights.size(); ++i)
@@ -169,7 +170,7 @@ std::vector<std::size_t> Learner::order_of(const std::vector<double>& weights) c
     return order;
 }
 
-/// Where light comes in, as long as that is small in what was looked at.
+/// Rectangle where light enters, narrowed as long as it is less than half of the probed rectangle.
 FlareRectangle Learner::narrow(const FlareFound& wide) const {
     FlareProbe probe{wide.probe.source, wide.probe.ghost, kLook, wide.narrowed()};
     for (int i = 0; i < 2; ++i) {
@@ -184,8 +185,8 @@ FlareRectangle Learner::narrow(const FlareFound& wide) const {
     return probe.where;
 }
 
-/// Looks again over more, as long as light comes in at the edge of what is looked at: what lies beyond would be left
-/// to the few blind paths, each of them a spark.
+/// Probes a larger rectangle as long as light enters at the edge of the probed rectangle: light beyond it would be left
+/// to the few defensive paths, and each would be a firefly.
 FlareFound Learner::look_closely(const FlareFound& wide, const FlareTiles& tiles, int across) const {
     FlareRectangle where = narrow(wide);
     for (int i = 0;; ++i) {
@@ -196,7 +197,7 @@ FlareFound Learner::look_closely(const FlareFound& wide, const FlareTiles& tiles
     }
 }
 
-/// In rounds: thin rings of light are followed from where they were hit by chance.
+/// Probes in rounds, to follow thin rings of light from random first hits.
 FlareFound Learner::look_into(const FlareProbe& what, const FlareTiles& tiles, int across) const {
     FlareFound found{what};
     std::vector<double> rays(std::size_t(across) * across);
@@ -226,7 +227,7 @@ FlareCells Learner::cells_of(const FlareFound& wide, const FlareFound& fine, con
     return cells;
 }
 
-/// Pairs by what is not learned: strength of the source, and reflectances straight on.
+/// Weights of pairs without learning: strength of the source times reflectances at normal incidence.
 std::vector<double> Learner::blind() const {
     std::vector<double> weights;
     for (int s = 0; s < sources(); ++s)
@@ -239,7 +240,7 @@ std::vector<double> Learner::blind() const {
     return weights;
 }
 
-/// Pools sources: of a dim one few rays were looked at, so all sources together know better which ghosts it has.
+/// Mixes in the mean ghost weights of all sources, as dim sources have been probed with few rays.
 void Learner::pool(std::vector<double>& weights) const {
     std::vector<double> of_ghost(ghosts());
     double all = 0;
@@ -254,7 +255,7 @@ void Learner::pool(std::vector<double>& weights) const {
     }
 }
 
-/// With a share that is drawn blindly; what is in the way of a source makes it weigh less, and what costs time.
+/// Distribution of pairs with a defensive share. Occluded sources and expensive paths have lower weights.
 DiscreteDistribution Learner::choice(std::vector<double> weights) const {
     for (std::size_t i = 0; i < weights.size(); ++i) {
         const int source = int(i) / ghosts();

@@ -1,5 +1,5 @@
-// flare_learn.h -- which emitters light which ghosts, through which part of the front lens and at which
-// wavelengths, found by exact rays.
+// flare_learn.h -- learns sampling distributions of pairs of emitter and ghost, front lens points and wavelengths, from
+// exact rays.
 //
 // Source: Pekkarinen and Balzer 2019, Physically Based Lens Flare Rendering in The Lego Movie 2, DigiPro
 // (sampling of ghosts and front cells from traced rays).
@@ -17,10 +17,10 @@ struct FlareKnowledge {
     std::vector<FlareCells> cells;
 };
 
-/// `mapped`: sources whose ghosts by two reflections are drawn from maps; none of a shorter list. Empty where nothing
-/// shines, or nothing reflects, or maps have all.
+/// `mapped`: sources with maps for ghosts with two reflections; missing entries are false. Empty without light sources
+/// or reflections, or if all pairs have maps.
 FlareKnowledge learn_flare(const FlareAim& aim, int threads, const std::vector<bool>& mapped = {});
-/// The same without a look: all pairs, all of the square and all wavelengths alike.
+/// Uniform distributions of pairs, the square and wavelengths.
 FlareKnowledge naive_flare(const FlareAim& aim);
 
 }  // namespace dg

@@ -10,9 +10,9 @@
 namespace dg {
 namespace {
 
-constexpr int kSequence = -4;   // where pixels have their row, in the sampler's scramble
-constexpr float kFarthestPx = 1e6f;   // from the frame: no pixel is there
-constexpr float kMostReach = 2.5f;    // px: of wider filters RayOnFilm chooses one pixel
+constexpr int kSequence = -4;   // in place of a pixel row, in the sampler's scramble
+constexpr float kFarthestPx = 1e6f;   // outside the frame
+constexpr float kMostReach = 2.5f;    // px: for wider filters RayOnFilm chooses a single pixel
 constexpr std::size_t kChunk = kLensBatch / kWavelengths;   // paths per call of the lens
 
 }  // namespace
@@ -23,7 +23,7 @@ FlarePass::FlarePass(const Picture& picture, double per_sample, std::shared_ptr<
       scale_(picture.density.integral_of_any_time()),
       guide_(std::move(guide)) {}
 
-/// All paths first, then one ghost after the other: rays by the same surfaces share the lanes.
+/// Draws all paths first, then traces them sorted by ghost: rays through the same surfaces share SIMD lanes.
 void FlarePass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) const {
     work.paths.clear(), work.u_pixel.clear(), work.sample.clear(), work.samplers.clear();
     for (std::uint64_t i = first; i < last; ++i) begin(work, i);
@@ -45,7 +45,7 @@ void FlarePass::draw(Workspace& work, std::uint64_t first, std::uint64_t last) c
     work.counters.flare_rays += (last - first) * kWavelengths;
 }
 
-/// Order of drawing: pair, point of the front, time and wavelengths are stratified together.
+/// Stratifies pair, point of the front, time and wavelengths jointly.
 void FlarePass::begin(Workspace& work, std::uint64_t index) const {
     PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index), picture_.settings.seed);
     const CameraRandom u = sampler.camera();
@@ -59,7 +59,7 @@ void FlarePass::begin(Workspace& work, std::uint64_t index) const {
     work.sample.push_back(std::uint32_t(double(index) / picture_.settings.flare.per_sample));
 }
 
-/// Paths of one ghost to the film, each wavelength by its own way.
+/// Traces paths of a ghost to the film, each wavelength separately.
 void FlarePass::trace(Workspace& work, std::size_t first, std::size_t last) const {
     work.rays.clear(), work.nm.clear();
     for (std::size_t i = first; i < last; ++i) {
@@ -80,7 +80,7 @@ void FlarePass::trace(Workspace& work, std::size_t first, std::size_t last) cons
     }
 }
 
-/// For a path of those that were traced last.
+/// Prefetches the film pixels of a path of the last traced chunk.
 void FlarePass::prefetch(const Workspace& work, std::size_t path) const {
     const float reach = picture_.settings.filter.radius();
     if (reach > kMostReach) return;

@@ -1,10 +1,9 @@
-// flare_pass.h -- ghosts, drawn from the emitters: a point that shines, a ghost, a ray to the front lens, traced
-// exactly by two reflections to a film point for each wavelength. What the lens lets through and nothing is in
-// the way of lands in a pixel.
+// flare_pass.h -- ghosts by light tracing: a point on an emitter, a ghost, and a ray to the front lens, traced exactly
+// through the ghost's surfaces to a film point for each wavelength. Unoccluded light that passes the lens is splatted.
 //
-// Light that other things send to the lens comes along paths of path.h, which begin where the lens's ray leaves.
+// Light reflected by the scene is estimated by paths (path.h) that start with the ray that leaves the lens.
 //
-// Units and weights are those of light_pass.h; no other technique finds ghosts, so there is nothing to share.
+// Units and weights are as in light_pass.h. No other technique finds ghosts, so no MIS is needed.
 #pragma once
 #include <vector>
 
@@ -15,15 +14,15 @@ namespace dg {
 
 class FlarePass {
   public:
-    static constexpr std::uint64_t kBlock = 16384;   // enough of one ghost to fill the SIMD lanes
+    static constexpr std::uint64_t kBlock = 16384;   // enough paths per ghost to fill the SIMD lanes
     /// `per_sample`: paths per unit of the density's counts.
     FlarePass(const Picture& picture, double per_sample, std::shared_ptr<const FlareGuide> guide);
 
-    /// Buffers of one thread.
+    /// Buffers of a thread.
     struct Workspace {
         std::vector<FlareArrival> paths;
         std::vector<Vec2f> u_pixel;
-        std::vector<PathSampler> samplers;   // for what follows in the world
+        std::vector<PathSampler> samplers;   // for paths through the scene
         std::vector<std::uint32_t> sample, order;
         std::vector<CameraRay> rays;
         std::vector<float> nm;

@@ -1,5 +1,5 @@
-// Ghosts drawn from the emitters are those that rays find which leave the film, go the same ways backward, and
-// look what shines where they come out: nothing is aimed or learned there.
+// Ghosts traced from the emitters, compared with rays traced backward from the film through the same surfaces, which
+// look up the emission where they leave the lens and need no aiming or learning.
 #include "render/flare/flare_pass.h"
 
 #include <doctest/doctest.h>
@@ -11,7 +11,7 @@ using namespace dg;
 
 namespace {
 
-/// A dark sky with a bright window of some tens of degrees before the camera.
+/// A dark sky with a bright window of some tens of degrees in front of the camera.
 EnvironmentImage window_sky() {
     EnvironmentImage sky{32, 16, std::vector<Rgb>(32 * 16, Rgb{0.2f, 0.3f, 0.5f})};
     for (int r = 4; r < 7; ++r)
@@ -19,7 +19,7 @@ EnvironmentImage window_sky() {
     return sky;
 }
 
-/// Sky, a lamp, a ball that shines, and something black in the way of some of their light.
+/// A sky, a lamp, an emissive ball, and a black occluder of some of their light.
 std::shared_ptr<const Scene> bright_scene() {
     SceneDescription d;
     d.environment = Environment::image(window_sky(), 1, {});
@@ -33,14 +33,14 @@ std::shared_ptr<const Scene> bright_scene() {
     return Scene::build(std::move(d));
 }
 
-/// Share of the ghosts' light that comes in outside of the cells that a guide learns.
+/// Share of the ghosts' light that enters outside the learned cells.
 double share_outside(const Scene& scene, const Camera& camera) {
     const FlareAim aim(scene, camera, settings(1, 100));
     const FlareKnowledge known = learn_flare(aim, 2);
     double all = 0, outside = 0;
     for (int g = 0; g < aim.ghosts(); ++g) {
         const FlareCells& cells = known.cells[std::size_t(known.cells_of_pair[g])];
-        if (cells.weights.empty()) continue;   // nothing of it was found on the frame
+        if (cells.weights.empty()) continue;   // no light was found on the frame
         for (const FlareFound::Hit& hit : probe_flare(aim, {0, g, 1 << 15}).hits)
             all += hit.luminance, outside += cells.inner.holds(hit.at) ? 0 : hit.luminance;
     }
@@ -75,7 +75,7 @@ TEST_CASE("ghosts from the emitters are those that rays from the film find") {
 TEST_CASE("what is drawn by what was learned is what is drawn by nothing") {
     const auto scene = bright_scene();
     Prescription lens = test::wide_angle();
-    lens.coating = Coating::broadband;   // wavelengths differ most
+    lens.coating = Coating::broadband;   // has the largest spectral variation
     const Camera camera = camera_with(lens);
     const Blocks learned = forward(*scene, camera, 8, 40000), plain = forward(*scene, camera, 8, 100000, false);
     INFO(show(learned) << show(plain));
@@ -91,7 +91,7 @@ TEST_CASE("the part of the front that is drawn densely holds the light of ghosts
         for (const Prescription& lens : {test::wide_angle(), test::telephoto(), test::fisheye()})
             outside += share_outside(*scene, camera_with(lens));
     }
-    CHECK(outside < 0.02);   // 0.75 before the part grew where light comes in at its edge
+    CHECK(outside < 0.02);   // 0.75 without the growth of rectangles with light at their edge
 }
 
 TEST_CASE("from a near light rays are as dense as solid angles of the square tell") {
@@ -106,7 +106,7 @@ TEST_CASE("from a near light rays are as dense as solid angles of the square tel
     for (const Vec2f at : {Vec2f{0.5f, 0}, Vec2f{0.3f, -0.4f}, Vec2f{-0.6f, 0.1f}}) {
         const auto path = aim.aim(0, 0, at, 0.25, u);
         REQUIRE(path);
-        // The square lies across the way from its middle: d = h / cos, and d^2 / cos is per sr what is per m2.
+        // The square is perpendicular to the ray at its center. With d = h / cos, d^2 / cos converts 1/m2 to 1/sr.
         const double cosine = dot(path->lens.ray.direction, middle->lens.ray.direction);
         CHECK(cosine < 0.995);
         CHECK(path->density / middle->density == doctest::Approx(std::pow(cosine, -3)).epsilon(1e-5));
@@ -180,7 +180,7 @@ TEST_CASE("ghosts of a sun with an angle are those of a far ball that looks as l
     INFO(show(of_far) << show(of_sun));
     CHECK(equality(of_sun, of_far) > 1e-3);
     CHECK(equality(ghosts(DirectionalLight{-way, lux}), of_far) < 1e-6);
-    // 2.3 degrees: the sun, which has no depth, gets maps, whose error is some 0.4 %.
+    // 2.3 degrees: the sun is drawn from maps, with an error of about 0.4 %, as it is at infinity.
     CHECK(whole(sun(0.02f)).mean / whole(far(0.02f)).mean == doctest::Approx(1).epsilon(0.01));
 }
 

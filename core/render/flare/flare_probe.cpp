@@ -8,10 +8,10 @@
 namespace dg {
 namespace {
 
-constexpr float kGrowth = 0.25f;   // of the size, at a side where light comes in
-constexpr int kSequence = -3;   // where pixels have their row, in the sampler's scramble
+constexpr float kGrowth = 0.25f;   // fraction of the size, at a side where light enters
+constexpr int kSequence = -3;   // in place of a pixel row, in the sampler's scramble
 
-/// A batch of rays by one ghost.
+/// A batch of rays through a ghost.
 struct Batch {
     std::vector<FlareArrival> paths;
     std::vector<CameraRay> rays;
@@ -24,7 +24,7 @@ struct Batch {
     }
     void trace(const FlareAim& aim, int ghost) {
         landings.assign(rays.size(), Reprojection{});
-        for (std::size_t begin = 0, end = 0; begin < rays.size(); begin = end) {   // states, one after the other
+        for (std::size_t begin = 0, end = 0; begin < rays.size(); begin = end) {   // runs of equal states
             const std::size_t state = aim.state_at(rays[begin].ray.time);
             while (end < rays.size() && aim.state_at(rays[end].ray.time) == state) ++end;
             const std::size_t n = end - begin;
@@ -35,7 +35,7 @@ struct Batch {
     void clear() { paths.clear(), rays.clear(), nm.clear(), lambda.clear(); }
 };
 
-/// How far, px; infinite for what does not come to the film's plane.
+/// Distance from the frame, px; infinite for rays that do not reach the film plane.
 float beside_frame(const Sensor& sensor, const Reprojection& landing) {
     if (!(landing.transmittance > 0)) return std::numeric_limits<float>::infinity();
     const Vec2f px = sensor.px_from_mm(landing.film_mm);
@@ -53,7 +53,7 @@ void collect(const FlareAim& aim, const Batch& batch, FlareFound& found) {
             if (apart < found.near_px) found.near_px = apart, found.near_at = path.at;
             continue;
         }
-        Spectrum light{0.f};   // of the one wavelength that was followed
+        Spectrum light{0.f};   // of the traced wavelength
         light.set(0, kWavelengths * path.radiance[0] * float(batch.landings[i].response / path.density));
         const Vec3f xyz = path.wavelengths.to_xyz(light);
         const Rgb rgb = rgb_from_xyz(xyz);

@@ -1,5 +1,5 @@
-// flare_scenes.h -- for tests only: ghosts drawn from the light, and by rays that leave the film, go the same ways
-// backward, and look what shines where they come out: nothing is aimed or learned there.
+// flare_scenes.h -- for tests: ghosts by light tracing, and a reference by rays traced backward from the film through
+// the same surfaces, which look up the emission where they leave the lens and need no aiming or learning.
 #pragma once
 #include <random>
 
@@ -58,7 +58,7 @@ inline Blocks forward(const Scene& scene, const Camera& camera, int pictures, do
     return all;
 }
 
-/// Light that shines straight along a ray of the world.
+/// Radiance of the emitter that a world ray hits first.
 inline Rgb light_along(const Scene& scene, const Ray& ray) {
     if (const auto hit = scene.intersect(ray)) {
         if (hit->sphere_light >= 0)
@@ -71,8 +71,9 @@ inline Rgb light_along(const Scene& scene, const Ray& ray) {
     return scene.lights().environment()->luminance(ray.direction, ray.time);
 }
 
-/// Rays from film points toward points of a disc at the lens's last vertex, by a ghost, all evenly. The disc is
-/// wider than the glass by what rays move before they meet it: it is curved, and the body has mirrors and plates.
+/// Uniform rays from film points toward a disc at the vertex of the last lens surface, through a ghost. The disc is
+/// wider than the glass by the distance that rays move before they hit the curved surface, or mirrors and plates of the
+/// body.
 struct Backward {
     const Scene& scene;
     const ExactLens& lens;
@@ -80,7 +81,7 @@ struct Backward {
     std::vector<Mirrors> mirrors = ghosts.two_bounces();
     std::vector<LensPath> paths;
     double rear, radius;   // mm
-    bool reflected = false;   // with what other things send
+    bool reflected = false;   // includes light reflected by the scene
 
     Backward(const Scene& s, const Camera& camera)
         : scene(s), lens(std::get<ExactLens>(camera.lens)), ghosts(lens.ghosts(camera.sensor_stack)) {
@@ -95,7 +96,7 @@ struct Backward {
         std::uniform_real_distribution<double> u(0, 1);
         std::vector<double> blocks(kBlockCount);
         for (int i = 0; i < rays; ++i) {
-            const double px = u(rng), py = u(rng);   // of the frame, from the top left
+            const double px = u(rng), py = u(rng);   // fraction of the frame, from the top left
             const Wavelengths wl = Wavelengths::sample(float(u(rng)));
             const std::size_t which = std::size_t(u(rng) * double(paths.size()));
             const Vec2d disc = concentric_disc({u(rng), u(rng)}) * radius;
@@ -135,7 +136,7 @@ struct Backward {
     }
 };
 
-/// A frame that is large enough for a shape of what the lens does to light.
+/// Size of a frame that resolves the shape of ghosts.
 inline constexpr int kWide = 160, kHigh = 120, kSide = 20;
 
 inline RenderSettings wide_settings(std::uint64_t seed, double paths, bool maps = false) {
@@ -146,7 +147,7 @@ inline RenderSettings wide_settings(std::uint64_t seed, double paths, bool maps 
     return s;
 }
 
-/// Means of blocks, of X, Y and Z.
+/// Block means of X, Y and Z.
 inline std::vector<double> blocks_of(const std::vector<float>& xyz) {
     constexpr int kAcross = kWide / kSide;
     std::vector<double> blocks(3 * std::size_t(kAcross) * (kHigh / kSide));
@@ -158,14 +159,15 @@ inline std::vector<double> blocks_of(const std::vector<float>& xyz) {
     return blocks;
 }
 
-/// The sun alone, within the frame.
+/// A scene with only the sun, inside the frame.
 inline std::shared_ptr<const Scene> sunny() {
     SceneDescription d;
     d.lights = {SphereLight{{normalize(Vec3f{0.12f, 0.08f, -1}) * 1000.f, 4.6f}, {3e5f, 3e5f, 3e5f}}};
     return Scene::build(std::move(d));
 }
 
-/// `drawn(threads, begin, end, film)` brings the same bits of flare with one thread, with four, and in two ranges.
+/// Checks that `drawn(threads, begin, end, film)` adds bit-identical flare with one thread, with four, and in two
+/// ranges.
 template <typename Drawn>
 void check_same_bits(const FilmLayout& layout, const Drawn& drawn) {
     Film one(layout), four(layout), first(layout), second(layout);
@@ -174,7 +176,7 @@ void check_same_bits(const FilmLayout& layout, const Drawn& drawn) {
     for (const Film* other : {&four, &first}) CHECK(std::ranges::equal(one.state("flare").bytes, other->state("flare").bytes));
 }
 
-/// The same of a part of the frame of wide_settings().
+/// Checks that crops of the frame of wide_settings() are bit-identical.
 template <typename Drawn>
 void check_crop(const Drawn& drawn) {
     Film one(FilmLayout{.width = kWide, .height = kHigh, .layers = {Layer::flare}});

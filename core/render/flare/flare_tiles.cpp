@@ -7,8 +7,8 @@
 namespace dg {
 namespace {
 
-constexpr int kAcross = 64;           // tiles, along the longer side
-constexpr double kDarkShare = 0.1;    // of the mean
+constexpr int kAcross = 64;           // tiles along the longer side
+constexpr double kDarkShare = 0.1;    // fraction of the mean that limits relative errors
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// flare_tiles.h -- how bright the flare is over the frame, coarsely: what an error is relative to.
+// flare_tiles.h -- coarse brightness of the flare over the frame, as the reference for relative errors.
 #pragma once
 #include <vector>
 
@@ -6,24 +6,24 @@
 
 namespace dg {
 
-/// Light in tiles of the frame, from rays that landed there.
+/// Light per tile of the frame, from rays that landed there.
 class FlareTiles {
   public:
     explicit FlareTiles(const Sensor& sensor);
 
     void add(Vec2f px, double light);
-    /// After all is added: blurs it, as a tile has few rays.
+    /// Blurs the tiles, as each has few rays. Call it after the last ray.
     void finish();
-    /// 1 / sqrt(R^2 + (0.1 mean)^2) with R the light of a pixel: what light is an error there, as the eye has it
-    /// and as relMSE does. What is darker than a tenth of the mean need not be exact.
+    /// 1 / sqrt(R^2 + (0.1 mean)^2) with R the light of a pixel: weight of an absolute error there, as in relMSE. Light
+    /// below a tenth of the mean need not be accurate.
     float importance(Vec2f px) const { return importance_[index(px)]; }
-    /// Light of a tile in the mean.
+    /// Mean light per tile.
     double mean() const { return mean_; }
     std::size_t count() const { return light_.size(); }
-    /// The tile of a place, the nearest of one beside the frame.
+    /// Index of the tile at a film position; positions outside the frame are clamped.
     std::size_t index(Vec2f px) const;
     float importance(std::size_t tile) const { return importance_[tile]; }
-    /// Pixels of a tile, about.
+    /// Approximate number of pixels per tile.
     double area() const { return 1 / (double(per_px_) * per_px_); }
 
   private:

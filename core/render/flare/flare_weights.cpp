@@ -7,17 +7,17 @@
 namespace dg {
 namespace {
 
-constexpr int kBins = 32;          // of wavelengths
+constexpr int kBins = 32;          // wavelength bins
 constexpr int kEnough = 6;         // hits per bin
-constexpr double kEvenBins = 0.1, kEvenCells = 0.05;   // share of the paths that all bins, all cells have alike
+constexpr double kEvenBins = 0.1, kEvenCells = 0.05;   // uniform share of bins and of cells
 
-constexpr double kSpread[] = {1, 0.1, 0.02};   // over cells beside one
+constexpr double kSpread[] = {1, 0.1, 0.02};   // blur over neighbouring cells, by distance
 
 int place(float x, int count) {
     return std::clamp(int(x * float(count)), 0, count - 1);
 }
 
-/// Adds their mean to all, so that it is a share of the new sum.
+/// Adds a constant to all values, such that it makes up a given share of the new sum.
 template <typename T>
 void add_even(std::vector<T>& values, double share) {
     const double mean = std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
@@ -41,7 +41,7 @@ FlareWeights::FlareWeights(const FlareFound& found, const FlareTiles& tiles, int
     add_even(cells, kEvenCells);
 }
 
-/// Coatings leave violet and deep red ten times brighter than what is between.
+/// Wavelengths differ: coatings reflect ten times more violet and deep red than light in between.
 void FlareWeights::weigh_wavelengths(const FlareFound& found, const FlareTiles& tiles) {
     const int bins = std::clamp(int(found.hits.size()) / kEnough, 1, kBins);
     wavelengths.assign(bins, 1);
@@ -57,13 +57,13 @@ void FlareWeights::weigh_wavelengths(const FlareFound& found, const FlareTiles& 
     for (int i = 0; i < bins; ++i) wavelengths[i] = weights[i] * (1 - kEvenBins);
 }
 
-/// Square of a path's light, times its chance: wavelengths are drawn by their weights.
+/// Second moment of a hit's light, with wavelengths drawn by their weights.
 double FlareWeights::square(const FlareFound::Hit& hit, const FlareTiles& tiles) const {
     const double light = hit.rgb * tiles.importance(hit.px);
     return light * light / wavelengths[place(hit.lambda, int(wavelengths.size()))];
 }
 
-/// A cell whose rays all missed may be lit at its edge where its neighbours are.
+/// Blurs squares over neighbouring cells: a cell without hits may receive light near a lit neighbour.
 double FlareWeights::blurred(const std::vector<double>& squares, int row, int column, int spread) const {
     double sum_of = 0, weights = 0;
     for (int y = std::max(0, row - spread); y <= std::min(across - 1, row + spread); ++y)

@@ -1,8 +1,8 @@
-// flare_weights.h -- how densely one emitter and ghost should be drawn, in all, over the front of the lens and
-// over the wavelengths, as probes tell.
+// flare_weights.h -- sampling weights of a pair of emitter and ghost, estimated from probes: total weight, cells of the
+// front lens, and wavelengths.
 //
-// The least noise for its time has what is drawn in proportion to the root of the mean square of what a path
-// brings; and that counts relative to how bright the picture is where it lands.
+// Sampling in proportion to the root mean square of a path's contribution minimizes noise per time. The contribution is
+// taken relative to the brightness of the picture where the path lands.
 #pragma once
 #include <vector>
 
@@ -12,12 +12,12 @@
 namespace dg {
 
 struct FlareWeights {
-    int across;                       // cells of the probed rectangle, in either direction
-    std::vector<float> cells;         // rows; none is 0
+    int across;                       // cells along each axis of the probed rectangle
+    std::vector<float> cells;         // row by row; all are positive
     std::vector<double> wavelengths;  // over [0, 1) of Wavelengths::at, of mean 1
-    double sum = 0;                   // of the whole rectangle
+    double sum = 0;                   // total weight of the rectangle
 
-    /// `spread`: over how many cells beside one it counts: those may be lit where no ray came.
+    /// `spread`: number of neighbouring cells over which hits are blurred, as cells without hits may receive light.
     FlareWeights(const FlareFound& found, const FlareTiles& tiles, int across, int spread = 1);
 
   private:

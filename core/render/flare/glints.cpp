@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kMostLamps = 16;
 constexpr int kMostBends = 6;
-constexpr float kNarrow = 4;   // per sr: lobes of this density show lamps, as mirrors do
+constexpr float kNarrow = 4;   // 1/sr: lobes of at least this density are treated like mirrors
 
 }  // namespace
 
@@ -45,7 +45,7 @@ float Glints::seen(Ray ray, float half_angle, Wavelengths wavelengths, PathSampl
     return wavelengths.to_xyz(light).y;
 }
 
-/// Light of one point of a lamp.
+/// Contribution of a point on a lamp.
 Rgb Glints::lamp(int source, const Ray& ray, float half_angle, const Wavelengths& wavelengths,
                  PathSampler& sampler, std::uint64_t& rays) const {
     const float u_select = sampler.next_1d();
@@ -59,7 +59,7 @@ Rgb Glints::lamp(int source, const Ray& ray, float half_angle, const Wavelengths
     const float facing = from->at_infinity ? 1 : std::abs(dot(from->point.normal, way));
     const Rgb luminance = scene_.emission(from->point, -way, ray.time);
     if (!(max_component(luminance) > 0)) return {0, 0, 0};
-    Ray shadow = ray;   // that the lamp itself does not hide it
+    Ray shadow = ray;   // ends before the lamp, which must not occlude itself
     shadow.direction = way;
     if (!from->at_infinity) shadow.t_max = std::sqrt(d2) * (1 - 1e-3f);
     ++rays;

@@ -1,5 +1,5 @@
-// glints.h -- small lamps in mirrors and glass, and how to come upon them: each lamp's light is spread over a cone
-// about the direction to it, wide at first. A path that leaves a mirror at random misses the sun, but not the cone.
+// glints.h -- finds reflections of small lamps in mirrors and glass. Each lamp's light is spread over a cone around its
+// direction, which paths after a specular bounce are likely to hit.
 #pragma once
 #include <vector>
 
@@ -11,12 +11,12 @@ namespace dg {
 
 class Glints {
   public:
-    /// The strongest of the sources that have a size. Scene and sources outlive this.
+    /// Uses the strongest sources that have an area. Scene and sources must outlive this.
     Glints(const Scene& scene, const EmitterPoints& sources);
 
     bool empty() const { return sources_.empty(); }
-    /// Luminance along a ray to the world by way of mirrors, glass and narrow lobes, were each lamp's light spread
-    /// over a cone of this half angle (rad): one path's estimate.
+    /// One-path estimate of the luminance along a world ray through mirrors, glass and narrow lobes, with each lamp's
+    /// light spread over a cone of this half angle (rad).
     float seen(Ray ray, float half_angle, Wavelengths wavelengths, PathSampler& sampler,
                std::uint64_t& rays) const;
 

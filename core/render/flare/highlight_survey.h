@@ -1,9 +1,9 @@
-// highlight_survey.h -- a coarse look around from the front of a lens, for light that other things send there:
-// lamps in mirrors, the sun on chrome and water, bright walls. Found once for a picture, before its ghosts.
+// highlight_survey.h -- finds bright reflections in the scene as seen from the front of a lens: lamps in mirrors, the
+// sun on chrome and water, bright walls. Runs once per picture, before its ghosts.
 //
-// Paths from all over the front and over the exposure look everywhere; bright spots are looked at again, more
-// and more closely. Lamps too small to be come upon in mirrors are spread out at first (glints.h). What lights
-// the front directly is left out.
+// Paths from random points of the front, at random times of the exposure, sample all directions; bright spots are
+// sampled again with increasing resolution. Lamps that are too small to be hit in mirrors are enlarged at first
+// (glints.h). Direct light on the front is excluded.
 #pragma once
 #include <functional>
 
@@ -13,13 +13,12 @@
 
 namespace dg {
 
-/// A ray of the lens to a point or direction of the world, from a place [-1, 1)^2 of its front; world. Nothing
-/// where no light enters.
+/// World ray from a point [-1, 1)^2 of the front to a world point or direction. Empty where no light enters the lens.
 using FrontRay = std::function<std::optional<Ray>(const EmitterPoint& to, Vec2f at, float time)>;
 
 struct SurveyView {
-    Vec3f anchor;        // m: middle of the front, at mid-exposure
-    float radius;        // of the front
+    Vec3f anchor;        // m: center of the front, at mid-exposure
+    float radius;        // m: of the front
     FrontRay ray;
     const Shutter& shutter;
     PathSettings path;
@@ -28,10 +27,11 @@ struct SurveyView {
 
 struct Survey {
     Highlights highlights;
-    std::uint64_t rays = 0;   // that it took
+    std::uint64_t rays = 0;   // number of rays traced
 };
 
-/// `lamps`: what may be seen in mirrors. The same for any number of threads. Empty if no path found anything.
+/// `lamps`: sources that mirrors may show. The result does not depend on the number of threads. Empty if no path finds
+/// light.
 Survey survey_highlights(const Scene& scene, const EmitterPoints& lamps, const SurveyView& view);
 
 }  // namespace dg

@@ -1,4 +1,4 @@
-// Ghosts of light that mirrors, glass and walls send to the lens.
+// Ghosts of light that mirrors, glass and walls reflect to the lens.
 #include "render/flare/highlight_survey.h"
 
 #include <doctest/doctest.h>
@@ -12,14 +12,14 @@ namespace {
 const Material kBlack{"black", DiffuseMaterial{{0, 0, 0}}};
 const Material kMirror{"mirror", ConductorMaterial{{1, 1, 1}, 0}};
 
-/// A quad about a point, [-width, width] x [-height, height], that faces a direction.
+/// A quad [-width, width] x [-height, height] around a point, facing a direction.
 Instance facing(std::uint32_t material, Vec3f at, Vec3f to, float width, float height) {
     const Vec3f z = normalize(to), x = normalize(cross(Vec3f{0, 1, 0}, z));
     return {"quad", 0, material, {x * width, cross(z, x) * height, z, at}};
 }
 
-/// A lamp far beside the frame, which a flat mirror shows; or the lamp in the mirror's stead, at the place of its
-/// image. A screen hides the lamp itself.
+/// A lamp far outside the frame, seen in a flat mirror, or the lamp at the position of its mirror image, without the
+/// mirror. A screen occludes the direct light of the lamp.
 std::shared_ptr<const Scene> mirrored(bool by_mirror) {
     const Vec3f lamp{0.35f, 0.1f, -0.3f}, image{-0.45f, 0.02f, -1}, way = lamp - image;
     const Vec3f at = image * (dot(way, (lamp + image) * 0.5f) / dot(way, image));
@@ -32,7 +32,7 @@ std::shared_ptr<const Scene> mirrored(bool by_mirror) {
     return Scene::build(std::move(d));
 }
 
-/// A chrome ball and one of glass under a lamp at the edge of the frame, a glossy table, a wall.
+/// A chrome ball and a glass ball under a lamp at the edge of the frame, a glossy table, a wall.
 std::shared_ptr<const Scene> still_life() {
     SceneDescription d;
     d.meshes = {quad_mesh(), ball_mesh(3)};

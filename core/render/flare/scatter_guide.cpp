@@ -9,15 +9,15 @@
 namespace dg {
 namespace {
 
-constexpr double kBlind = 0.3;    // share of paths by what the emitters bring to the lens
-constexpr double kBlindFront = 0.1;   // and of those to all of the front, at least
-constexpr int kFirst = 1 << 15, kSecond = 1 << 18;   // walks of both looks, all sources together
-constexpr int kFewest = 64, kMost = 1 << 13;   // of one source in the first
-constexpr double kDim = 0.002;    // of the light: what brings less is not looked at again
-constexpr int kCells = 16;        // across
-constexpr int kSequence = -7;     // where pixels have their row, in the sampler's scramble
+constexpr double kBlind = 0.3;    // defensive share of paths, by the emitters' illuminance at the lens
+constexpr double kBlindFront = 0.1;   // least uniform share of front points
+constexpr int kFirst = 1 << 15, kSecond = 1 << 18;   // walks of both passes, all sources together
+constexpr int kFewest = 64, kMost = 1 << 13;   // per source in the first pass
+constexpr double kDim = 0.002;    // fraction of the light: dimmer sources skip the second pass
+constexpr int kCells = 16;        // along each axis
+constexpr int kSequence = -7;     // in place of a pixel row, in the sampler's scramble
 
-/// Evenly over the square of FlareAim.
+/// Uniform point of FlareAim's square.
 Vec2f on_square(Vec2f u) {
     return {2 * u.x - 1, 2 * u.y - 1};
 }
@@ -65,7 +65,7 @@ double ScatterGuide::Front::pdf(Vec2f at) const {
 ScatterGuide::Landings ScatterGuide::trace(const FlareArrival& path, std::uint64_t seed) const {
     const float time = path.lens.ray.time;
     const State& state = states_[aim_->state_at(time)];
-    const Vec2f shift = setting_at(camera_, time).film_shift_mm;   // the film lay elsewhere then
+    const Vec2f shift = setting_at(camera_, time).film_shift_mm;   // film shift at that time
     Landings landings;
     for (int k = 0; k < kWavelengths; ++k) {
         const ExactLens::Scattered light =
@@ -76,18 +76,18 @@ ScatterGuide::Landings ScatterGuide::trace(const FlareArrival& path, std::uint64
     return landings;
 }
 
-/// Light that one walk of one wavelength brings to the frame, if it comes there.
+/// Light that a walk at one wavelength adds to the frame; empty if it misses the frame.
 std::optional<double> ScatterGuide::light_of(const FlareArrival& path, float nm, std::uint64_t seed) const {
     const State& state = states_[aim_->state_at(path.lens.ray.time)];
     const auto landing = state.lens.reproject(path.lens, state.parts.at(nm), state.parts, seed).landing;
     if (!aim_->on_frame(landing, path.lens.ray.time)) return std::nullopt;
-    Spectrum seen = path.radiance;
-    if (!path.from.reflected) {   // else it is about what was seen from the lens
+    Spectrum radiance = path.radiance;
+    if (!path.from.reflected) {   // reflected light was found by rays from the lens
         const Ray shadow = flare_shadow(path.from, to_world(camera_, path.lens.ray));
         if (!is_traceable(shadow)) return std::nullopt;
-        seen = seen * scene_.visibility_along(shadow, path.wavelengths);
+        radiance = radiance * scene_.visibility_along(shadow, path.wavelengths);
     }
-    return double(path.wavelengths.to_xyz(seen).y) * landing.response / path.density;
+    return double(path.wavelengths.to_xyz(radiance).y) * landing.response / path.density;
 }
 
 ScatterGuide::Found ScatterGuide::look(int source, int walks) const {
@@ -108,7 +108,7 @@ ScatterGuide::Found ScatterGuide::look(int source, int walks) const {
     return found;
 }
 
-/// Paths go where the root of the mean square of their light says, and some to the cells beside it.
+/// Weights cells by the root mean square of their light, blurred over neighbouring cells.
 ScatterGuide::Front ScatterGuide::front_of(const Found& found) {
     Front front;
     if (!(found.light > 0)) return front;

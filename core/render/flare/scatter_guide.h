@@ -1,6 +1,6 @@
-// scatter_guide.h -- which emitters bring light that the lens's own parts scatter onto the frame: found once for
-// a picture, by walks. A share of the paths goes by what the emitters bring to the lens, whatever was found, so
-// that what the walks missed costs noise and no bias.
+// scatter_guide.h -- importance sampling of light scattered inside the lens, learned once per picture by random walks:
+// emitters and cells of the front. A defensive share of the paths chooses emitters by their illuminance at the lens, so
+// that errors of the learned distribution cause noise and no bias.
 #pragma once
 #include <array>
 #include <memory>
@@ -15,24 +15,24 @@ namespace dg {
 
 class ScatterGuide {
   public:
-    /// The aim's scene and camera. Error for a lens whose barrel is not known.
+    /// `scene` and `camera`: the same as in `aim`. Throws Error for a lens with an unknown barrel.
     ScatterGuide(std::shared_ptr<const FlareAim> aim, const Scene& scene, const Camera& camera,
                  const RenderSettings& settings);
 
-    /// Nothing shines, or nothing scatters.
+    /// No light source, or no scattering part.
     bool empty() const { return sources_.empty(); }
     const FlareAim& aim() const { return *aim_; }
 
-    /// From random numbers by purpose; nothing if the path cannot bring light.
+    /// Samples a path; empty if it carries no light.
     std::optional<FlareArrival> draw(float source, Vec2f front, const FlareAim::Random& u) const;
 
-    /// One walk for each wavelength, all by the same numbers: they go about the same way.
+    /// A random walk for each wavelength, with common random numbers, so that they take similar paths.
     struct Landings {
         std::array<Reprojection, kWavelengths> at;
         std::array<float, kWavelengths> blur2_mm2;   // ScatteredLight::blur2
     };
     Landings trace(const FlareArrival& path, std::uint64_t seed) const;
-    /// Scattered light of the whole frame as walks found it: exposure x mm2. 0: they found none.
+    /// Scattered light of the whole frame as estimated by walks, exposure x mm2. 0: none found.
     double light() const { return light_; }
 
   private:
@@ -40,19 +40,18 @@ class ScatterGuide {
         ExactLens lens;
         ScatterLens parts;
     };
-    /// Where light of a source enters that comes to the frame: cells of FlareAim's square; a share of the paths
-    /// goes to all of it evenly.
+    /// Distribution of front points of a source: cells of FlareAim's square, mixed with a uniform share.
     struct Front {
         Distribution2D cells;
         double blind = 1;
         Vec2f sample(Vec2f u) const;
         double pdf(Vec2f at) const;   // per unit of the square
     };
-    /// Results of some walks from a source to the frame.
+    /// Result of a number of walks from a source.
     struct Found {
         double light = 0;
         int hits = 0;
-        std::vector<double> squares;   // of light, by cell
+        std::vector<double> squares;   // second moment of light, per cell
     };
     void learn(int threads);
     Found look(int source, int walks) const;
@@ -65,7 +64,7 @@ class ScatterGuide {
     std::vector<State> states_;
     DiscreteDistribution sources_;
     double light_ = 0;
-    std::vector<Front> fronts_;   // by source
+    std::vector<Front> fronts_;   // per source
 };
 
 }  // namespace dg

@@ -8,9 +8,9 @@
 namespace dg {
 namespace {
 
-constexpr float kShare = 0.1f;          // of the variance of a blur
-constexpr double kArrive = 1 / 16.0;    // share of paths that come to the frame, about
-constexpr double kBright = 32;          // times a usual path: a bright one
+constexpr float kShare = 0.1f;          // fraction of the variance of a blur
+constexpr double kArrive = 1 / 16.0;    // approximate fraction of paths that reach the frame
+constexpr double kBright = 32;          // ratio of a bright path to a typical path
 
 }  // namespace
 
@@ -31,14 +31,14 @@ ScatterNodes::ScatterNodes(const Picture& picture, const ScatterGuide& guide)
                                                        picture.settings.filter.variance(), bright / (1 << 2 * level));
 }
 
-/// Both bounds at once, without a step where one takes over.
+/// Combines both bounds smoothly.
 int ScatterNodes::level_of(float blur2_mm2, float u) const {
     const float own = kShare * blur2_mm2 * px2_per_mm2_, variance = own * most_ / (own + most_);
     if (!(variance >= CoarseLight::variance(kFinest))) return 0;
     return int(CoarseLight::level_of(variance, kFinest, CoarseLight::kMostLevel) + u);
 }
 
-/// Some pixel of the region.
+/// Whether a pixel of the region is in reach.
 bool ScatterNodes::reaches(Vec2f px, float reach) const {
     const FilmLayout& region = picture_.density.region();
     const float left = float(region.offset_x), top = float(region.offset_y);
@@ -46,7 +46,7 @@ bool ScatterNodes::reaches(Vec2f px, float reach) const {
            px.y < top + float(region.height) + reach;
 }
 
-/// At the line of a rolling shutter where light lands, or the nearest.
+/// Shutter opening at the line where light lands, or at the nearest line.
 float ScatterNodes::exposed(Vec2f px, float time) const {
     const Shutter* shutter = picture_.density.rolling();
     if (!shutter) return 1;
@@ -69,11 +69,11 @@ ScatterNodes::Places ScatterNodes::take(ScatterGuide::Landings& landings, float 
     return places;
 }
 
-/// Wavelengths that land within a node of each other are one arrival to the variance, as they are to a pixel.
+/// Wavelengths that land within a node spacing of each other count as a single arrival for the variance, as in a pixel.
 void ScatterNodes::add(Work& work, const Places& places, const Wavelengths& wavelengths, Spectrum light,
                        std::uint32_t sample) const {
     Film& film = picture_.film;
-    int of = 0;              // level of the first of them
+    int of = 0;              // level of the first landing in the group
     std::size_t first = 0;
     for (const Places::Place& place : std::span(places.all.data(), std::size_t(places.count))) {
         Spectrum own{0.f};

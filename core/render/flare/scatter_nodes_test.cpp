@@ -1,5 +1,5 @@
-// Scattered light on nodes is that of each path by itself: over the frame, at its edges, in the light's image and far from
-// it; and the film knows how noisy it is.
+// Scattered light on nodes agrees with splats of single paths: over the frame, at its edges, near the light's image and
+// far from it. The film's noise estimate is correct.
 #include "render/flare/scatter_nodes.h"
 
 #include <doctest/doctest.h>
@@ -22,7 +22,7 @@ Camera scattering(const Prescription& lens) {
     return camera;
 }
 
-/// A sun that much to the right, and a little up.
+/// A sun at an angle to the right, and slightly up.
 std::shared_ptr<const Scene> sun_at(float tangent) {
     SceneDescription d;
     d.lights = {SphereLight{{normalize(Vec3f{tangent, 0.03f, -1}) * 1000.f, 4.6f}, {3e5f, 3e5f, 3e5f}}};
@@ -47,7 +47,7 @@ Blocks pictures(const Scene& scene, const Camera& camera, int count, double path
 
 TEST_CASE("scattered light on nodes is that of paths by themselves, in every channel and block") {
     for (const Prescription& lens : {test::tessar(), test::sonnar(), test::telephoto()})
-        for (const float tangent : {0.1f, 0.5f}) {   // in the frame, and beside it
+        for (const float tangent : {0.1f, 0.5f}) {   // inside and outside the frame
             const Camera camera = scattering(lens);
             const auto scene = sun_at(tangent);
             const Blocks nodes = pictures(*scene, camera, 8, 15000, true), alone = pictures(*scene, camera, 8, 20000, false);

@@ -6,7 +6,7 @@
 namespace dg {
 namespace {
 
-constexpr int kSequence = -6;   // where pixels have their row, in the sampler's scramble
+constexpr int kSequence = -6;   // in place of a pixel row, in the sampler's scramble
 
 }  // namespace
 
@@ -24,7 +24,7 @@ void ScatterPass::draw(Workspace& work, std::uint64_t first, std::uint64_t last)
     if (nodes_) nodes_->flush(work.arrivals);
 }
 
-/// Order of drawing: source, point of the front, time and wavelengths are stratified together.
+/// Stratifies source, point of the front, time and wavelengths jointly.
 void ScatterPass::draw_one(Workspace& work, std::uint64_t index) const {
     PathSampler sampler(int(std::uint32_t(index >> 32)), kSequence, std::uint32_t(index), picture_.settings.seed);
     const CameraRandom u = sampler.camera();

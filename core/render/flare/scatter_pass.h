@@ -1,9 +1,9 @@
-// scatter_pass.h -- light that the lens's own parts scatter, drawn from the emitters: a point that shines, a ray
-// to the front lens, and a walk through it (optics/stray/scatter_lens.h) that barrel, blades or a rough surface turn.
-// What comes to the film and nothing is in the way of lands on the nodes around it (scatter_nodes.h) or, where light is not
-// smooth, in a pixel, in the layer of flare.
+// scatter_pass.h -- light scattered inside the lens, by light tracing: a point on an emitter, a ray to the front lens,
+// and a random walk through the lens (optics/stray/scatter_lens.h), scattered by barrel, blades or rough surfaces.
+// Unoccluded light that reaches the film is splatted to nodes (scatter_nodes.h) or, where it is not smooth, to pixels,
+// in the flare layer.
 //
-// Units and weights are those of light_pass.h; no other technique finds this light.
+// Units and weights are as in light_pass.h. No other technique finds this light.
 #pragma once
 #include "render/flare/scatter_nodes.h"
 
@@ -32,7 +32,7 @@ class ScatterPass {
     Picture picture_;
     double per_sample_, scale_;
     std::shared_ptr<const ScatterGuide> guide_;
-    std::unique_ptr<const ScatterNodes> nodes_;   // null: pixels alone
+    std::unique_ptr<const ScatterNodes> nodes_;   // null: splats to pixels only
 };
 
 }  // namespace dg

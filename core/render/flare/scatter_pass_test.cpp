@@ -1,5 +1,5 @@
-// Scattered light drawn from the emitters is that which walks find that leave the film, go through the lens
-// backward, and look what shines where they come out: nothing is aimed or learned there.
+// Scattered light traced from the emitters, compared with random walks traced backward from the film through the lens,
+// which look up the emission where they leave it and need no aiming or learning.
 #include "render/flare/scatter_pass.h"
 
 #include <doctest/doctest.h>
@@ -10,7 +10,7 @@ using namespace dg;
 
 namespace {
 
-/// A dark sky with a bright window to the left of the frame, a lamp in it, and something black before them.
+/// A dark sky with a bright window to the left of the frame, a lamp inside the frame, and a black occluder.
 std::shared_ptr<const Scene> bright_scene() {
     EnvironmentImage sky{32, 16, std::vector<Rgb>(32 * 16, Rgb{0.2f, 0.3f, 0.5f})};
     for (int r = 5; r < 9; ++r)
@@ -53,7 +53,7 @@ Blocks from_emitters(const Scene& scene, const Camera& camera, int pictures, dou
     return all;
 }
 
-/// Walks from film points toward a disc at the last vertex, wider than the glass by what rays move before it.
+/// Walks from film points toward a disc at the last vertex, which is wider than the glass as in flare_scenes.h.
 Blocks from_film(const Scene& scene, const Camera& camera, int pictures, int walks) {
     const ExactLens& lens = std::get<ExactLens>(camera.lens);
     const ScatterLens parts = lens.scatter(camera.sensor_stack, camera.scatter);
@@ -66,7 +66,7 @@ Blocks from_film(const Scene& scene, const Camera& camera, int pictures, int wal
         std::uniform_real_distribution<double> u(0, 1);
         std::vector<double> blocks(kBlockCount);
         for (int i = 0; i < walks; ++i) {
-            const double px = u(rng), py = u(rng);   // of the frame, from the top left
+            const double px = u(rng), py = u(rng);   // fraction of the frame, from the top left
             const Wavelengths wl = Wavelengths::sample(float(u(rng)));
             const Vec2d disc = concentric_disc({u(rng), u(rng)}) * radius;
             const int k = int(u(rng) * kWavelengths);
@@ -97,7 +97,7 @@ TEST_CASE("light that the lens's parts scatter is the same from the emitters and
     static const char* more = std::getenv("DG_EFFORT");
     const int effort = more ? std::atoi(more) : 1;
     const auto scene = bright_scene();
-    // Parts that scatter so much that a few percent of error show.
+    // Parts with so much scattering that the test detects errors of a few percent.
     const Finish white{.diffuse = 0.9, .gloss = 0};
     const Camera cameras[] = {scattering(test::check_lens(false, 0.5), {white, kBlack, 0}),
                               scattering(test::tessar(), {kBlack, kBlack, 40, {0.1, -3}}),
@@ -114,7 +114,7 @@ TEST_CASE("light that the lens's parts scatter is the same from the emitters and
 }
 
 TEST_CASE("what a white wall sends to the lens is scattered as if the wall shone") {
-    // Lit from straight ahead by pi lux, a white wall has the luminance of one that shines with 1 cd/m2.
+    // Lit at normal incidence by pi lux, a white wall has a luminance of 1 cd/m2, like the emissive wall.
     SceneDescription white, shines;
     for (SceneDescription* d : {&white, &shines}) {
         d->meshes = {quad_mesh()};
@@ -143,7 +143,7 @@ TEST_CASE("a lens whose parts are black and smooth scatters nothing") {
 TEST_CASE("scattered light of a light without size is the limit of that of a small lamp") {
     SceneDescription ball, point;
     const float radius = 0.01f;
-    const Vec3f at{0.5f, 0.12f, -0.8f};   // outside of the frame
+    const Vec3f at{0.5f, 0.12f, -0.8f};   // outside the frame
     ball.lights = {SphereLight{{at, radius}, Rgb{1, 1, 1} * (1000 / (kPi * radius * radius))}};
     point.lights = {PointLight{at, {1000, 1000, 1000}}};
     const Camera camera = scattering(test::tessar(), {kGrey, kGrey, 20, {0.1, -2}});

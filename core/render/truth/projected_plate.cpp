@@ -18,7 +18,7 @@ ProjectedPlate::ProjectedPlate(const Scene& scene, Camera camera, RenderSettings
         throw input_error("plate", "pixels", std::to_string(wanted), std::to_string(pixels_.size()));
 }
 
-/// Between the middles of pixels; at an edge as far as the picture goes.
+/// Interpolates bilinearly between pixel centers; the half pixel at the edge is clamped.
 std::optional<Rgb> ProjectedPlate::at(Vec3f place, float w, float time) const {
     const auto px = view_.px_of(to_double(place), w, time);
     const int width = settings_.sensor.width, height = settings_.sensor.height;

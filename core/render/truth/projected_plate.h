@@ -1,4 +1,4 @@
-// projected_plate.h -- a photograph that is thrown back into the scene along the chief rays of the camera that took it.
+// projected_plate.h -- a photograph projected into the scene along the chief rays of its camera.
 #pragma once
 #include <vector>
 
@@ -9,8 +9,8 @@ namespace dg {
 
 class ProjectedPlate final : public PlateLight {
   public:
-    /// `pixels`: RGB (cd/m2), rows from the top, as many as the settings' sensor has; of these, sensor and shutter
-    /// count. The scene outlives it.
+    /// `pixels`: RGB (cd/m2), rows from the top, in the size of the settings' sensor. Uses only sensor and shutter of
+    /// the settings. The scene must outlive this.
     ProjectedPlate(const Scene& scene, Camera camera, RenderSettings settings, std::vector<Rgb> pixels);
 
     std::optional<Rgb> at(Vec3f place, float w, float time) const override;

@@ -9,10 +9,10 @@
 namespace dg {
 namespace {
 
-constexpr int kSide = 24;   // lens samples a side
+constexpr int kSide = 24;   // lens samples along each axis
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Whether some ray of the lens, as it is at that time, comes to a film point.
+/// Whether a ray through the lens at that time reaches a film point.
 bool light_passes(const Camera& camera, Vec2d film_mm, float time) {
     std::vector<CameraSample> samples = lens_cells({float(film_mm.x), float(film_mm.y)}, kSide);
     for (CameraSample& sample : samples) sample.time = time;

@@ -1,4 +1,4 @@
-// ray_map.h -- the chief ray of each pixel's centre, at the moment of its line.
+// ray_map.h -- the chief ray of each pixel center, at the time of the pixel's line.
 #pragma once
 #include <vector>
 
@@ -10,19 +10,19 @@
 
 namespace dg {
 
-/// Rows from the top; NaN where no light comes to a pixel.
+/// Rays, row by row from the top; NaN where no light reaches a pixel.
 struct PixelRays {
     std::vector<Vec3d> origins, directions;  // m, unit
-    std::vector<double> times;               // fraction of the scene's interval; known for all
+    std::vector<double> times;               // fraction of the scene's interval; never NaN
 };
 
-/// Whether light comes to a film point (mm, upright). `chief`: those of the lens at that time.
+/// Whether light reaches a film point (mm, upright). `chief`: chief rays of the lens at that time.
 bool sees(const Camera& camera, const ChiefRays& chief, Vec2d film_mm, float time);
 
-/// Which frame rays are in: the camera's own at each ray's time, or the world's.
+/// Coordinate frame of rays: the camera at each ray's time, or the world.
 enum class RayFrame { camera, world };
 
-/// Rays of the pixels of a region, which may lie beside the frame. Of the layout its place and size count.
+/// Rays of the pixels of a region, which may extend beyond the frame. Uses only position and size of the layout.
 PixelRays ray_map(const Camera& camera, const Sensor& sensor, const Shutter& shutter,
                   const FilmLayout& region, RayFrame frame, int threads);
 

@@ -43,7 +43,7 @@ TEST_CASE("where no light comes there is no ray") {
     CHECK(std::isnan(map.origins.back().z));
     CHECK(std::isfinite(map.directions[20].x));
     const ChiefRays chief(lens);
-    for (double r = 0; r < 60; r += 0.7) {   // as the samples themselves say
+    for (double r = 0; r < 60; r += 0.7) {   // compares with traced samples
         const Camera camera{Affine3d{}, lens};
         std::vector<CameraSample> samples;
         for (int k = 0; k < 4096; ++k)

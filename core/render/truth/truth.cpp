@@ -8,7 +8,7 @@
 namespace dg {
 namespace {
 
-/// Calls use(pixel index) for all of a region.
+/// Calls use(pixel index) for all pixels of a region.
 template <typename Use>
 void for_each_pixel(const FilmLayout& region, const RenderSettings& settings,
                     const Use& use) {

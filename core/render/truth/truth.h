@@ -1,11 +1,9 @@
-// truth.h -- ground truth: what each pixel's chief ray meets at the pixel's own moment,
-// exactly and not averaged over lens and time, and where the same surface points lie in
-// another frame.
+// truth.h -- ground truth: the surface point hit by each pixel's chief ray at the time of the pixel, without averaging
+// over lens and time, and the position of that surface point in another frame.
 //
-// A frame is a scene and a camera built over its moments: a shutter whose exposure has no
-// length tells them apart by line, if it rolls. Surface points are followed by instance,
-// triangle and barycentrics, so frames that are compared are of one scene, built at
-// different times.
+// A frame is a scene and a camera for a time interval. The shutter has an exposure of 0; a rolling shutter gives each
+// line a different time. Surface points are identified by instance, triangle and barycentrics, so frames can be
+// compared if they are built from the same scene at different times.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -22,14 +20,14 @@ struct TruthFrame {
     const Camera& camera;
 };
 
-/// Sight of a camera ray: a surface, or a direction at infinity.
+/// The hit of a camera ray: a surface point, or a direction at infinity.
 struct Seen {
     RawHit hit;
     bool surface = false;
-    Vec3f direction;  // unit: the surface's normal in the world, or where in the sky
+    Vec3f direction;  // unit: normal of the surface in the world, or direction in the sky
 };
 
-/// Planes of the pixels of a region, in rows from the top. Where there is no surface all is 0.
+/// Planes of the pixels of a region, row by row from the top. All are 0 where there is no surface.
 struct TruthPlanes {
     explicit TruthPlanes(const FilmLayout& region);
 
@@ -37,7 +35,7 @@ struct TruthPlanes {
     std::vector<float> depth, distance;   // m: along the camera's -z; from its origin
     std::vector<Vec3f> position, normal;  // world; m, unit
     std::vector<std::uint32_t> object_id,
-        material_id;  // index + 1; 0: none, as of sphere lights
+        material_id;  // index + 1; 0: none, e.g. sphere lights
 };
 
 struct Truth : TruthPlanes {
@@ -46,23 +44,23 @@ struct Truth : TruthPlanes {
     std::vector<Seen> seen;
 };
 
-/// Surface point that a ray meets, where it meets one.
+/// A surface point hit by a ray.
 struct TruthPoint {
     float depth, distance;
     Vec3f position, normal;
     std::uint32_t object_id = 0, material_id = 0;
 };
-/// `camera`: its pose at the ray's time.
+/// `camera`: pose of the camera at the ray's time.
 TruthPoint truth_point(const Scene& scene, const Ray& ray, const RawHit& hit,
                        const Affine3d& camera);
 
-/// Chief rays through the centres of the pixels, to the nearest surface that is not cut
-/// out. Of the settings sensor, shutter and threads count.
+/// Traces chief rays of pixel centers to the nearest surface that is not cut out by alpha. Uses only sensor, shutter
+/// and threads of the settings.
 Truth see(const TruthFrame& frame, const FilmLayout& region,
           const RenderSettings& settings);
 
-/// Where (px, of the full frame) what was seen lies in `frame`, at the moment of the line
-/// on which it lands; NaN where it is not there, or behind the camera.
+/// Positions of the hits in `frame` (px of the full frame), at the time of the line where each is imaged; NaN if it
+/// does not exist there or is behind the camera.
 std::vector<Vec2d> places(const Truth& truth, const TruthFrame& frame,
                           const RenderSettings& settings);
 

@@ -1,4 +1,4 @@
-// truth_channels.h -- the one list of the planes of ground truth: names and order in files and in Python.
+// truth_channels.h -- the channels of ground truth; defines their names and order in files and in Python.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace dg {
 
-/// One value of each pixel: a length or a component, or an id.
+/// A channel with one value per pixel: a length, a component, or an ID.
 struct TruthChannel {
     const char* name;
     std::variant<float (*)(const TruthPlanes&, std::size_t pixel),
@@ -30,7 +30,7 @@ inline const std::array kTruthChannels{
     TruthChannel{"material_id", [](const TruthPlanes& t, std::size_t i) { return t.material_id[i]; }},
 };
 
-/// The plane that only means have (MeanTruth::coverage).
+/// Channel of MeanTruth::coverage, which exists only for means.
 inline constexpr const char* kCoverageChannel = "coverage.Y";
 
 }  // namespace dg

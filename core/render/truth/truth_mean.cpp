@@ -11,13 +11,13 @@
 namespace dg {
 namespace {
 
-/// The rays of one pixel after the other.
+/// Generates the rays of pixels.
 class PixelRays {
   public:
     PixelRays(const TruthView& view, int count)
         : view_(view), samples_(count), rays_(count) {}
 
-    /// Calls use(ray of the world, weight) for those that pass; `i` in the rows of `region`.
+    /// Calls use(world ray, weight) for rays that pass the lens; `i`: index of the pixel in `region`.
     template <typename Use>
     void draw(const FilmLayout& region, std::size_t i, const Use& use) {
         const Vec2d middle = centre(region, i);
@@ -45,7 +45,7 @@ class PixelRays {
     std::vector<CameraRay> rays_;
 };
 
-/// Light by id.
+/// Light of each ID.
 using Shares = std::map<std::uint32_t, double>;
 
 std::uint32_t largest(const Shares& shares) {
@@ -75,7 +75,7 @@ struct PixelSums {
     }
 };
 
-/// Calls use(rays, pixel) for all of a region, a row to a thread.
+/// Calls use(rays, pixel) for all pixels of a region, in parallel over rows.
 template <typename Use>
 void for_each_pixel(const TruthView& view, const FilmLayout& region, int rays,
                     const Use& use) {
@@ -85,7 +85,7 @@ void for_each_pixel(const TruthView& view, const FilmLayout& region, int rays,
     });
 }
 
-/// Sums over points that have a place both now and then.
+/// Sums over points that are imaged in both frames.
 struct MotionSums {
     Vec2d moved{};
     double weight = 0;
@@ -94,7 +94,7 @@ struct MotionSums {
 Seen what_sees(const Scene& scene, const Ray& ray) {
     const auto hit = scene.first_hit(ray);
     if (!hit) return {{}, false, scene.sky_from_world(ray.direction, ray.time)};
-    // Only spheres are followed by their normal.
+    // Only points of spheres are identified by their normal.
     const bool sphere = hit->instance == RawHit::kSphere;
     return {*hit, true, sphere ? scene.surface(ray, *hit).surface.ns : Vec3f{}};
 }

@@ -1,4 +1,4 @@
-// Means over the rays of a pixel against closed forms: edges out of focus, planes in focus.
+// Mean ground truth against closed forms: edges out of focus, planes in focus.
 #include "render/truth/truth_mean.h"
 
 #include <doctest/doctest.h>
@@ -12,7 +12,7 @@ namespace {
 const Sensor kSensor{40, 30, 36, 27};   // px of 0.9 mm
 const FilmLayout kAll{kSensor.width, kSensor.height, 0, 0};
 constexpr double kPixels = 50 / 0.9;    // film distance of the 50 mm lens, px
-constexpr double kRadius = 0.0125;      // of the iris, m: 50 mm at f/2
+constexpr double kRadius = 0.0125;      // radius of the iris, m: 50 mm at f/2
 constexpr double kFocus = 0.25;         // m
 constexpr int kRays = 1024;
 
@@ -24,10 +24,10 @@ std::shared_ptr<const Motion> placed(Vec3d origin, double scale, Vec3d per_secon
     return std::make_shared<const Motion>(Motion::keys(times, keys, Interpolation::linear));
 }
 
-/// A wall at z = -6, and before it, at z = -2, another one that covers all to the left of x = 0.
+/// A wall at z = -6, and in front of it a wall at z = -2 that covers x < 0.
 struct World {
     LensKind lens = ThinLens{50, 1e3 * kRadius, kFocus, {}, false};
-    double near_scale = 10, near_right = 0;   // m; where it ends
+    double near_scale = 10, near_right = 0;   // m; x of its right edge
     Vec3d near_speed{0, 0, 0}, far_speed{0, 0, 0};
 
     struct Shot {
@@ -50,13 +50,13 @@ struct World {
     }
 };
 
-/// Share of a disc of radius 1 to the left of x.
+/// Fraction of the unit disc to the left of x.
 double share_left(double x) {
     const double t = std::clamp(x, -1.0, 1.0);
     return 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPiD;
 }
 
-/// Share, for pixels of a column, of the light that meets the near wall: a ray from p of the iris crosses z = -2 at
+/// Share of the light of a column's pixels from the near wall. A ray from the iris point p crosses z = -2 at
 /// 2 chief + p (1 - 2 / focus).
 double near_share(int column) {
     double sum = 0;
@@ -91,7 +91,7 @@ TEST_CASE("out of focus, an edge is each side by its share of the iris") {
 
 TEST_CASE("coverage is the share of the light that meets something") {
     World world;
-    world.near_scale = 0.05;   // a square that ends at x = 0, as high as it is wide
+    world.near_scale = 0.05;   // a square with its right edge at x = 0
     World::Shot shot = world.at(0);
     SceneDescription d = shot.scene->description();
     d.instances.pop_back();
@@ -104,13 +104,13 @@ TEST_CASE("coverage is the share of the light that meets something") {
             CHECK(truth.depth[i] == doctest::Approx(2).epsilon(1e-5));
         CHECK((truth.object_id[i] == 1) == (truth.coverage[i] > 0.5));
     }
-    // Blur spreads its area (px2) and loses nothing of it.
+    // Blur preserves the covered area (px2).
     CHECK(covered == doctest::Approx(std::pow(0.1 / 2 * kPixels, 2)).epsilon(0.01));
 }
 
 TEST_CASE("in focus the means are what the chief rays meet") {
     World world;
-    world.near_right = -100;   // out of sight
+    world.near_right = -100;   // outside the frame
     const LensKind lenses[] = {
         ThinLens{50, 1e3 * kRadius, 6, {}, true},
         ExactLens(test::check_lens(false, 0.5), {2.8, {}, 6, FocusFrom::pupil, 24})};

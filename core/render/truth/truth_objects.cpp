@@ -9,9 +9,9 @@
 namespace dg {
 namespace {
 
-constexpr int kLayers = 1024;  // surfaces along one ray that are looked at
+constexpr int kLayers = 1024;  // limit of surfaces along a ray
 
-/// Behind a hit, by more than what its place may be off: relative to where it is in the world.
+/// Ray parameter behind a hit, offset by more than the rounding error of its position.
 float past(const Ray& ray, float t) {
     const Vec3f o = ray.origin;
     return t + 4e-6f * (t + std::abs(o.x) + std::abs(o.y) + std::abs(o.z));
@@ -50,7 +50,7 @@ void join(GroupOutline& all, const GroupOutline& part) {
     hold(all, part.low), hold(all, part.high);
 }
 
-/// The groups that a ray meets, the nearest first, each once.
+/// The groups that a ray hits, front to back, each once.
 void groups_along(const Scene& scene, Ray ray, Groups groups, std::vector<std::uint32_t>& met) {
     met.clear();
     for (int layer = 0; layer < kLayers; ++layer) {
@@ -58,14 +58,14 @@ void groups_along(const Scene& scene, Ray ray, Groups groups, std::vector<std::u
         if (!hit) return;
         const bool sphere = hit->instance == RawHit::kSphere;
         const std::uint32_t group = sphere ? kNoGroup : groups[hit->instance];
-        // An object that belongs to nobody hides what is behind it, too: it stands first, or nowhere.
+        // An instance without a group occludes, too. It is recorded only if it is the nearest hit.
         const bool counts = group != kNoGroup || met.empty();
         if (counts && std::ranges::find(met, group) == met.end()) met.push_back(group);
         ray.t_min = past(ray, hit->t);
     }
 }
 
-/// One instance on the film.
+/// Outline of an instance on the film.
 class InstanceOutline {
   public:
     InstanceOutline(const TruthView& view, std::uint32_t instance)
@@ -80,12 +80,12 @@ class InstanceOutline {
     GroupOutline outline;
 
   private:
-    static constexpr double kShort = 4;     // px: edges that cannot bend by much
-    static constexpr double kLong = 32;     // px: edges that are halved in any case
+    static constexpr double kShort = 4;     // px: shorter edges are treated as straight
+    static constexpr double kLong = 32;     // px: longer edges are always halved
     static constexpr double kStraight = 0.05;  // px
-    static constexpr int kHalvings = 24;    // to where an edge leaves what the camera sees
+    static constexpr int kHalvings = 24;    // limit, for edges that leave the field of view
     static constexpr int kBlindHalvings = 5;
-    static constexpr double kBlindAngle = 0.05;  // rad: shorter edges out of sight are left
+    static constexpr double kBlindAngle = 0.05;  // rad: shorter edges outside the field of view are skipped
 
     struct Corner {
         bool known = false;
@@ -121,7 +121,7 @@ class InstanceOutline {
         }
     }
 
-    /// Lines along a segment of a curve, as many as its thickness asks for, and the rings at its ends.
+    /// Adds lines along a segment of a curve, in a number that depends on its thickness, and rings at its ends.
     void add_segment(std::uint32_t i) {
         const double first = mesh_->curves.cubic ? 0 : -1, last = mesh_->curves.cubic ? 1 : 2;
         const int lines = lines_along(i);
@@ -132,7 +132,7 @@ class InstanceOutline {
         }
     }
 
-    /// So many that a circle of this size on the film is off by kStraight between two of them.
+    /// Number of lines for which a polygon deviates by kStraight from a circle of this size on the film.
     int lines_along(std::uint32_t i) const {
         double radius = 0;
         for (const double u : {0.0, 1.0})
@@ -179,7 +179,7 @@ class InstanceOutline {
         return halvings < kBlindHalvings && subtended(triangle, a.uv, b.uv) > kBlindAngle;
     }
 
-    /// How wide an edge is as the camera sees it.
+    /// Angle that an edge subtends at the camera, rad.
     double subtended(std::uint32_t triangle, Vec2d a, Vec2d b) const {
         const float time = view_.time_at(middle_);
         const auto p = place(triangle, a, time), q = place(triangle, b, time);

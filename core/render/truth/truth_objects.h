@@ -1,5 +1,5 @@
-// truth_objects.h -- where things are on the film, by themselves: whole, behind others, and
-// beside the picture. Things are groups of instances; what they are called is not known here.
+// truth_objects.h -- unoccluded silhouettes and bounding boxes of objects on the film, including parts that are hidden
+// by other objects or outside the frame. Objects are groups of instances.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -13,23 +13,23 @@ namespace dg {
 using Groups = std::span<const std::uint32_t>;
 constexpr std::uint32_t kNoGroup = 0xffffffffu;
 
-/// Pixels of a region whose chief rays meet a group: first of all, or at all.
+/// Pixels of a region with chief rays that hit a group: as the nearest group, or at any depth.
 struct Silhouette {
     std::uint64_t visible = 0, whole = 0;
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // of the whole, px of the full frame, end exclusive
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // bounds at any depth, px of the full frame, end exclusive
 };
-/// Rays go on through what they meet, to the end. Of the settings as of see().
+/// Traces chief rays through all surfaces along them. Uses the same settings as see().
 std::vector<Silhouette> silhouettes(const TruthFrame& frame, const FilmLayout& region,
                                     const RenderSettings& settings, Groups groups,
                                     std::size_t count);
 
-/// The box around all points of a group, px of the full frame, wherever they land.
+/// Bounding box of all points of a group, px of the full frame; it may extend beyond the frame.
 struct GroupOutline {
     Vec2d low{0, 0}, high{0, 0};
-    bool empty = true;  // none has a place
-    bool open = false;  // some have none: behind the camera, or past the lens's field
+    bool empty = true;  // no point is imaged
+    bool open = false;  // some points are not imaged: behind the camera, or outside the field of the lens
 };
-/// Edges of triangles and lines along curves that the lens bends are followed, to 0.05 px or better.
+/// Subdivides triangle edges and lines along curves that distortion bends, to an error of at most 0.05 px.
 std::vector<GroupOutline> outlines(const TruthFrame& frame, const RenderSettings& settings,
                               Groups groups, std::size_t count);
 

@@ -1,4 +1,4 @@
-// Boxes and silhouettes of things by themselves, against closed forms and dense points.
+// Bounding boxes and silhouettes of objects, against closed forms and dense points.
 #include "render/truth/truth_objects.h"
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@ const Sensor kSensor{40, 30, 36, 27};  // px of 0.9 mm
 const FilmLayout kAll{kSensor.width, kSensor.height, 0, 0};
 constexpr double kPixels = 50 / 0.9;   // film distance of the 50 mm lens, px
 
-/// A square of half side `half`, turned about x by `degrees`.
+/// A square of half side `half`, rotated about x by `degrees`.
 Affine3f square(double half, Vec3d origin, double degrees = 0) {
     const Affine3d turn =
         to_matrix(Quaterniond::from_axis_angle({1, 0, 0}, degrees * kPiD / 180));
@@ -27,7 +27,7 @@ struct World {
     std::vector<Affine3f> squares;
     LensKind lens = Pinhole{50, false};
     ShutterSettings shutter{};
-    Vec3d per_second{0, 0, 0};   // of the first
+    Vec3d per_second{0, 0, 0};   // velocity of the first square
 
     struct Shot {
         std::shared_ptr<const Scene> scene;
@@ -110,7 +110,7 @@ TEST_CASE("edges that a fisheye bends reach as far as their points") {
     CHECK(!o.open);
     check_box(o, dense.low.x, dense.low.y, dense.high.x, dense.high.y, 0.06);
     const Vec2d corner = kSensor.px_from_mm(*fisheye.film_point({-1.3, 2.3, -1.5}, 1));
-    CHECK(corner.x - dense.low.x > 1);   // planted: corners alone
+    CHECK(corner.x - dense.low.x > 1);   // planted fault: corners alone
     CHECK(corner.y - dense.low.y > 1);
 }
 
@@ -119,15 +119,15 @@ TEST_CASE("a rolling shutter: each point at the moment of the line on which it l
     world.shutter = {0, OpeningCurve(), ScanOrder::top, 1e-3};
     world.per_second = {8, 0, 0};
     const double side = kPixels / 4, per_line = 8 * 1e-3 * kPixels / 4;
-    // px rows above and below the middle; line i opens (i - 0.5) lines after the first.
+    // Rows of the top and bottom edges; line i opens (i - 0.5) line times after the first.
     const double top = (15 - side / 2 - 0.5) * per_line, end = (15 + side / 2 - 0.5) * per_line;
     check_box(world.outline(), 20 - side / 2 + top, 15 - side / 2, 20 + side / 2 + end,
               15 + side / 2, 1e-3);
-    CHECK(end - top > 1);   // planted: one moment for all
+    CHECK(end - top > 1);   // planted fault: one time for all lines
 }
 
 TEST_CASE("silhouettes: what is hidden counts for the whole, and what hides for nobody else") {
-    // The nearer one hides the lower left quarter of the farther one; half px margins at the edges.
+    // The near square covers the lower left quarter of the far square; edges have margins of half a pixel.
     const double px = 4 / kPixels;   // m at z = -4
     World world{{square(6 * px, {0, 0, -4}), square(4 * px, {-4 * px, -4 * px, -4})}};
     for (float* v : {&world.squares[1].origin.x, &world.squares[1].origin.y,

@@ -28,19 +28,19 @@ Motion between(double begin, const Affine3d& a, double end, const Affine3d& b,
     return Motion::keys(times, keys, how);
 }
 
-/// Moves by `per_second` from where it is at time 0.
+/// Motion with a constant velocity from the pose `m` at time 0.
 Motion drifting(const Affine3d& m, Vec3d per_second) {
     Affine3d before = m, after = m;
     before.origin = before.origin - per_second, after.origin = after.origin + per_second;
     return between(-1, before, 1, after);
 }
 
-/// A quad of half side 3 at z = -4, as `motion` moves it, before a camera.
+/// A quad of half side 3 at z = -4, moved by `motion`, in front of a camera.
 struct World {
     Motion motion = turned({0, 0, 1}, 0, {0, 0, -4});
-    Motion camera = Affine3d{};  // of time in s
+    Motion camera = Affine3d{};  // over time in s
     LensKind lens = Pinhole{50, false};
-    ShutterSettings shutter{};  // of ground truth: no exposure, lines
+    ShutterSettings shutter{};  // for ground truth: exposure 0, with lines
     SceneDescription description = describe(quad_mesh(), GltfMaterial{});
     float size = 3;
 
@@ -73,9 +73,8 @@ Vec2d centre(std::size_t i) {
     return {double(i % kSensor.width) + 0.5, double(i / kSensor.width) + 0.5};
 }
 
-/// Largest distance, px, from where things lie a frame later to where `expected` has
-/// them: of a pixel's centre. Planted faults: `sign` -1 looks at the frame before, `off`
-/// moves the centres.
+/// Largest distance, px, between positions a frame later and `expected`(pixel center). Planted faults: `sign` -1 uses
+/// the frame before, `off` shifts the centers.
 template <typename Expected>
 double worst(const World& world, const Expected& expected, double sign = 1,
              Vec2d off = {}) {
@@ -87,13 +86,13 @@ double worst(const World& world, const Expected& expected, double sign = 1,
     for (std::size_t i = 0; i < from.size(); ++i) {
         const Vec2d wanted = expected(centre(i) + off);
         const double miss = std::max(length(to[i] - wanted), length(from[i] - centre(i)));
-        worst = miss <= worst ? worst : miss;  // NaN stays
+        worst = miss <= worst ? worst : miss;  // propagates NaN
         if (std::isnan(miss)) return miss;
     }
     return worst;
 }
 
-/// Film px about the axis, y up, and back.
+/// Converts film px to px relative to the axis with y up; it is its own inverse.
 Vec2d up(Vec2d px) {
     return {px.x - 20, 15 - px.y};
 }
@@ -151,12 +150,12 @@ TEST_CASE("a quad that drifts and one that spins") {
 }
 
 TEST_CASE("a pan moves what is near and the background alike") {
-    for (const float size : {3.f, 1e-3f}) {  // the second one leaves the background
+    for (const float size : {3.f, 1e-3f}) {  // the small quad leaves the background visible
         World world;
         world.size = size;
         world.camera = between(-1, turned({0, 1, 0}, -30, {}), 1,
                                turned({0, 1, 0}, 30, {}), Interpolation::twist);
-        const double a = 3 * kPiD / 180;  // to the left, so things go right
+        const double a = 3 * kPiD / 180;  // pans left, so that images move right
         const auto panned = [a](Vec2d px) {
             const Vec2d v = up(px) * (1 / kPixels);
             const double x = std::cos(a) * v.x + std::sin(a),
@@ -174,7 +173,7 @@ TEST_CASE("a rolling shutter: the line on which a point lands has its own time")
     world.motion = drifting(turned({0, 0, 1}, 0, {0, 0, -4}), {0, -speed, 0});
     for (const ScanOrder scan : {ScanOrder::top, ScanOrder::bottom}) {
         world.shutter = {0, OpeningCurve(), scan, 2e-3};
-        // Later by a frame, and by the line time for each line further down (top first).
+        // Later by a frame time, and by a line time for each line (from the top).
         const double lines_per_s = speed * kPixels / 4,
                      line_s = scan == ScanOrder::top ? 2e-3 : -2e-3;
         const double fall = lines_per_s * kFrame / (1 - lines_per_s * line_s);
@@ -183,13 +182,13 @@ TEST_CASE("a rolling shutter: the line on which a point lands has its own time")
         const Truth truth = see(now, kAll, now.settings);
         const auto to = places(truth, next, next.settings);
         for (std::size_t i = 0; i < to.size(); ++i) {
-            if (to[i].y > 29.5) continue;  // past the last line its time is held
+            if (to[i].y > 29.5) continue;  // beyond the last line its time is used
             off = std::max(off, std::abs(to[i].y - centre(i).y - fall));
             plain =
                 std::max(plain, std::abs(to[i].y - centre(i).y - lines_per_s * kFrame));
         }
         CHECK(off < 1e-3);
-        CHECK(plain > 0.02);  // planted: no row times
+        CHECK(plain > 0.02);  // planted fault: no row times
     }
 }
 

@@ -1,5 +1,5 @@
-// truth_view.h -- one frame's camera as ground truth asks it: rays of film points at their own
-// moments, and where points of the world lie on the film.
+// truth_view.h -- the camera of a frame for ground truth: chief rays of film points at the times of their lines, and
+// film points of world points.
 #pragma once
 #include <optional>
 
@@ -15,23 +15,23 @@ class TruthView {
     float time_at(Vec2d px) const { return float(settings_.shutter.opens_at(px)); }
     Affine3d pose(float time) const { return camera_.world_from_camera.at(time); }
 
-    /// The chief ray of a film point, in the world; nothing where the camera sees nothing.
+    /// The chief ray of a film point, in the world; empty outside the lens's field.
     std::optional<Ray> ray(Vec2d px) const;
 
-    /// Where a point of the world (w = 1) or a direction (w = 0) lies on the film at `time`.
+    /// Film position (px) of a world point (w = 1) or direction (w = 0) at `time`.
     std::optional<Vec2d> px_of(Vec3d point, double w, float time) const;
-    /// The same of something that was seen, as it has moved until then.
+    /// Film position (px) at `time` of a hit, which follows its surface to that time.
     std::optional<Vec2d> px_of(const Seen& seen, float time) const;
 
-    /// Where it lands at the moment of the line on which it lands; `px` is a first guess.
+    /// Film position (px) of a hit at the time of the line where it is imaged; `px` is the initial guess.
     std::optional<Vec2d> landing(const Seen& seen, Vec2d px) const {
         return landing_of([&](float time) { return px_of(seen, time); }, px);
     }
-    /// The same of anything that has a place on the film at a time: px_at(time).
+    /// Film position (px) of a moving point at the time of the line where it is imaged. px_at(time): its position.
     template <typename PxAt>
     std::optional<Vec2d> landing_of(const PxAt& px_at, Vec2d px) const {
         if (!settings_.shutter.rolls()) return px_at(time_at(px));
-        for (int round = 0; round < kRounds; ++round) {  // settles if slower than the lines
+        for (int round = 0; round < kRounds; ++round) {  // converges if the point is slower than the lines
             const auto next = px_at(time_at(px));
             if (!next || length(*next - px) < kSettled) return next;
             px = *next;
@@ -39,7 +39,7 @@ class TruthView {
         return bisected(px_at);
     }
 
-    /// Shift of the film, mm, beside what the sensor has anyway.
+    /// Film shift at `time`, mm, in addition to the sensor's shift.
     Vec2d shift(float time) const;
 
     const Scene& scene() const { return scene_; }
@@ -47,11 +47,11 @@ class TruthView {
     const RenderSettings& settings() const { return settings_; }
 
   private:
-    static constexpr int kRounds = 16;  // of the plain search for the line of a point
+    static constexpr int kRounds = 16;  // fixed-point iterations for the line of a point
     static constexpr double kSettled = 1e-5;  // px
 
-    /// Bisects for a point that moves as fast as the lines, or faster. Before the first line and past the last one time
-    /// is held, so it lands there or crosses some line in between.
+    /// Bisection, for a point that moves at least as fast as the lines. Times are clamped to the first and last line,
+    /// so the point is imaged beyond them or crosses a line in between.
     template <typename PxAt>
     std::optional<Vec2d> bisected(const PxAt& px_at) const {
         const bool columns = settings_.shutter.scans_columns();
@@ -62,7 +62,7 @@ class TruthView {
             px = px_at(time_at({middle, middle}));
             if (!px) return px;
             const bool further = (columns ? px->x : px->y) > middle;
-            if (further == (i == 1) && i < 2) return px;  // outside of the frame
+            if (further == (i == 1) && i < 2) return px;  // outside the frame
             (further ? low : high) = middle;
         }
         return px;
@@ -74,7 +74,7 @@ class TruthView {
     ChiefRaysOverTime chief_;
 };
 
-/// The middle of pixel i of a region, px of the full frame.
+/// Center of pixel i of a region, px of the full frame.
 inline Vec2d centre(const FilmLayout& region, std::size_t i) {
     return {region.offset_x + double(i % region.width) + 0.5,
             region.offset_y + double(i / region.width) + 0.5};

@@ -1,4 +1,4 @@
-// drawn_ghosts.h -- the ghosts of a source, and those of them that matter.
+// drawn_ghosts.h -- the ghosts of a source, and the selection of relevant ghosts.
 #pragma once
 #include <memory>
 #include <optional>
@@ -9,21 +9,21 @@
 
 namespace dg {
 
-/// A ghost with the rays that it is made of.
+/// A ghost with its rays.
 struct DrawnGhost {
-    int pair;   // of reflections, see FlareAim
+    int pair;   // index of the pair of reflections, see FlareAim
     std::unique_ptr<MapRays> rays;
     std::unique_ptr<LiveGhost> ghost;
     double worth = 0;
 };
 
-/// All ghosts of two reflections whose light comes to the frame. `known`: of each pair; nothing: it brings none. Null:
-/// nothing is known. It and the source outlive them.
+/// All ghosts with two reflections that send light to the frame. `known`: entry per pair, empty for pairs without
+/// light; null: unknown. `known` and `source` must outlive the ghosts.
 std::vector<DrawnGhost> ghosts_of(const FlareAim& aim, const LiveSource& source, const Sensor& sensor,
                                   const std::vector<std::optional<KnownGhost>>* known, int threads);
 
-/// Keeps the brightest, without those that nobody would miss: `dim` is what they are worth among all, at most. Returns
-/// what the others are worth.
+/// Keeps the brightest ghosts and removes dim ghosts with a total worth of at most the fraction `dim`. Returns the
+/// worth of the remaining ghosts.
 double choose(std::vector<DrawnGhost>& all, const Sensor& sensor, double dim);
 
 }  // namespace dg

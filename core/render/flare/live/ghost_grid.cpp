@@ -8,18 +8,18 @@
 namespace dg {
 namespace {
 
-constexpr int kZooms = 5;          // times that the region is closed in on, at most
-constexpr int kCoarse = 8;         // squares across meanwhile
-constexpr int kSearches = 4;       // for light that no look found
-constexpr float kAbout = 2;        // squares
-constexpr int kHardly = 8;         // nodes at which light was seen: fewer ask for a closer look
-constexpr int kPlenty = 120;       // nodes that let light pass: no light hides between them
-constexpr float kCloseIn = 0.5f;   // share of the region that holds the light: less is worth another look
-constexpr float kWellSeen = 0.8f;  // the same where there is plenty
-constexpr double kDim = 0.005;     // share of all light: not worth closing in on
-constexpr double kFaint = 0.001;   // share of all light: not worth a search
-constexpr double kFewRays = 5e-4;  // share of all light: worth a ray at every other node
-constexpr float kMargin = 2.f / GhostGrid::kSquares;   // of a region that is known about, on each side
+constexpr int kZooms = 5;          // limit of zoom steps
+constexpr int kCoarse = 8;         // squares along each axis while zooming
+constexpr int kSearches = 4;       // search steps if no ray finds light
+constexpr float kAbout = 2;        // radius of a search, in squares
+constexpr int kHardly = 8;         // lit nodes below which positions between nodes are sampled
+constexpr int kPlenty = 120;       // lit nodes above which no light is missed between nodes
+constexpr float kCloseIn = 0.5f;   // lit fraction of the region below which zooming continues
+constexpr float kWellSeen = 0.8f;  // limit of the lit fraction with at least kPlenty lit nodes
+constexpr double kDim = 0.005;     // share of all light below which the region is not zoomed
+constexpr double kFaint = 0.001;   // share of all light below which no search is made
+constexpr double kFewRays = 5e-4;  // share of all light below which every other node is traced
+constexpr float kMargin = 2.f / GhostGrid::kSquares;   // relative margin around a known region
 
 struct Range {
     float low = std::numeric_limits<float>::infinity(), high = -low;
@@ -28,7 +28,7 @@ struct Range {
 };
 
 MapLanding mean(const MapLanding& a, const MapLanding& b) {
-    MapLanding m = a.sound ? b : a;   // one that is lost says where
+    MapLanding m = a.sound ? b : a;   // a lost ray keeps its position
     m.sound = a.sound && b.sound;
     m.px = 0.5f * (a.px + b.px), m.beyond = 0.5f * (a.beyond + b.beyond), m.pass = 0.5f * (a.pass + b.pass);
     for (int k = 0; k < kMostCrossings; ++k) m.iris[k] = 0.5f * (a.iris[k] + b.iris[k]);
@@ -77,15 +77,15 @@ bool GhostGrid::passes(const Looks& by, const MapLanding& l) {
     return l.sound && here && by.rays.stopped(l) < 0;
 }
 
-/// How far from one that passes: 0 at an edge or a side of the frame.
+/// Distance of a ray from passing to the frame: 0 at an edge or at a side of the frame.
 float GhostGrid::from_light(const Looks& by, const MapLanding& l) {
     if (!l.sound) return std::numeric_limits<float>::infinity();
     const auto beside = [&](float px, int size) { return (std::abs(px - 0.5f * float(size)) - by.reach) / float(size) - 0.5f; };
     return std::max({by.rays.stopped(l), beside(l.px.x, by.sensor.width), beside(l.px.y, by.sensor.height)});
 }
 
-/// Squares near where light was seen; where there is hardly any, also by looks between nodes. If nothing is seen, all that
-/// are not dark.
+/// Marks squares near lit nodes; with few lit nodes, samples positions between nodes, too. Without any light, marks all
+/// squares that are not dark.
 int GhostGrid::mark(const Looks& by) {
     const int side = squares + 1, reach = squares / kCoarse;
     std::vector<bool> may(squares * squares), near(squares * squares);
@@ -128,7 +128,7 @@ int GhostGrid::mark(const Looks& by) {
 
 float GhostGrid::middle_nm() { return lambda_node(1); }
 
-/// How much light was seen on a grid over the region.
+/// Traces a grid over the region, and returns the number of lit nodes.
 int GhostGrid::look(const Looks& by, int across) {
     const bool few = across == kSquares && by.share < kFewRays;
     squares = few ? across / 2 : across;
@@ -140,7 +140,7 @@ int GhostGrid::look(const Looks& by, int across) {
     return mark(by);
 }
 
-/// Takes what holds all that may be lit; false: that is no smaller, or nothing.
+/// Shrinks the region to the lit squares; false if it is not smaller, or empty.
 bool GhostGrid::close_in(float least) {
     int low_x = squares, low_y = squares, high_x = 0, high_y = 0;
     for (int y = 0; y < squares; ++y)
@@ -156,8 +156,8 @@ bool GhostGrid::close_in(float least) {
     return true;
 }
 
-/// Light comes through the smallest of places, if at all: takes what is about the ray that came nearest to it; false: all
-/// is dark.
+/// Shrinks the region to the surroundings of the ray that came nearest to the frame, as light may enter through a tiny
+/// part; false if all is dark.
 bool GhostGrid::search() {
     if (std::ranges::find(lit, true) == lit.end() || !(nearest < std::numeric_limits<float>::infinity())) return false;
     const auto end = float(squares);
@@ -168,7 +168,7 @@ bool GhostGrid::search() {
     return true;
 }
 
-/// No ray is lost where light may come through.
+/// Whether no ray is lost in lit squares.
 bool GhostGrid::is_smooth() const {
     const int side = squares + 1;
     for (int i = 0; i < squares * squares; ++i)
@@ -177,7 +177,7 @@ bool GhostGrid::is_smooth() const {
     return true;
 }
 
-/// Light comes in at a side of the region that is none of the front's: there may be more beyond.
+/// Whether light enters at a side of the region inside the front, so that the region may be too small.
 bool GhostGrid::is_cut(const Looks& by) const {
     const int side = squares + 1;
     const Vec2f low = region.low, high = region.low + region.size;
@@ -192,7 +192,7 @@ bool GhostGrid::is_cut(const Looks& by) const {
            (high.y < 1 && lit_at([&](int k) { return squares * side + k; }));
 }
 
-/// Closes in on the light from all of the front; how much it saw then.
+/// Zooms in on the light from the whole front; returns the number of lit nodes.
 int GhostGrid::find(const Looks& by) {
     region = {};
     int seen = look(by, kSquares);

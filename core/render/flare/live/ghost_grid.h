@@ -1,5 +1,5 @@
-// ghost_grid.h -- the part of the front through which a ghost of a small source comes to the frame, and rays of the source's
-// middle from a grid over it.
+// ghost_grid.h -- finds the part of the front through which a ghost of a small source reaches the frame, with a grid of
+// rays from the source's center.
 #pragma once
 #include <optional>
 #include <vector>
@@ -10,22 +10,22 @@
 namespace dg {
 
 struct GhostGrid {
-    static constexpr int kSquares = 16, kSide = kSquares + 1;   // across
+    static constexpr int kSquares = 16, kSide = kSquares + 1;   // along each axis
 
-    FlareRectangle region;             // of the square that holds the front
-    std::vector<MapLanding> nodes;     // row by row; none: no light comes to the frame
-    std::vector<bool> lit;             // squares through which light may come
-    std::size_t rays = 0;              // that it took
+    FlareRectangle region;             // rectangle of the front's square
+    std::vector<MapLanding> nodes;     // row by row; empty: no light reaches the frame
+    std::vector<bool> lit;             // squares through which light may enter
+    std::size_t rays = 0;              // number of rays traced
 
-    /// `reach`: px beside the frame that count. `known`: or null.
+    /// `reach`: margin around the frame, px. `known`: may be null.
     GhostGrid(const MapRays& rays, const Sensor& sensor, float reach, const KnownGhost* known);
 
     bool empty() const { return nodes.empty(); }
-    /// The place of a node, in squares, or of one between nodes.
+    /// Front point at a grid position, in squares.
     Vec2f at(Vec2f node) const { return region.at(node * (1 / float(squares))); }
 
-    /// Rays at the corners of a square of nodes, `side` across, are all stopped, and by more than that changes from one to
-    /// the next; or all land beside the frame.
+    /// Whether the rays at the corners of a square are all blocked with clip values above their differences, or all
+    /// land outside the frame. `side`: nodes per row.
     static bool is_dark(const MapRays& rays, const Sensor& sensor, float reach, const MapLanding* at, int side);
 
     static float middle_nm();
@@ -35,8 +35,8 @@ struct GhostGrid {
         const MapRays& rays;
         const Sensor& sensor;
         float reach;
-        int hardly;     // nodes at which light was seen: fewer ask for a closer look
-        double share;   // of the light of all ghosts, about
+        int hardly;     // least number of lit nodes; with fewer, positions between nodes are sampled
+        double share;   // approximate share of the light of all ghosts
     };
     static bool passes(const Looks& by, const MapLanding& landing);
     int mark(const Looks& by);
@@ -48,9 +48,9 @@ struct GhostGrid {
     bool is_smooth() const;
     static float from_light(const Looks& by, const MapLanding& landing);
 
-    int squares = kSquares;   // across, of the present look
-    float nearest = 0;        // of its rays to passing
-    Vec2f nearest_at{};       // in squares
+    int squares = kSquares;   // squares along each axis of the current grid
+    float nearest = 0;        // smallest from_light() among its rays
+    Vec2f nearest_at{};       // grid position of that ray, in squares
 };
 
 }  // namespace dg

@@ -1,5 +1,5 @@
-// ghost_place.h -- through which part of the front a ghost comes to the frame, and how its glass is there: what changes
-// little while the source turns, and is kept.
+// ghost_place.h -- the part of the front through which a ghost reaches the frame, and the transmittance there. Both
+// vary slowly with the source's direction, and are cached.
 #pragma once
 #include <array>
 #include <memory>
@@ -10,31 +10,32 @@
 
 namespace dg {
 
-/// For sources in one direction.
+/// Region and spectra of a ghost for a source direction.
 struct GhostPlace {
     using Spectrum = std::array<float, LiveSource::kNodes>;   // transmittance at nodes of the wavelength
 
-    FlareRectangle region;           // of the square that holds the front
-    double share = 0;                // worth among all ghosts
-    int side = 0;                    // nodes of the region across
+    FlareRectangle region;           // rectangle of the front's square
+    double share = 0;                // share of the worth of all ghosts
+    int side = 0;                    // nodes along each axis of the region
     std::vector<Spectrum> spectra;   // at its nodes, row by row
 
-    /// At a place of the region, [0, 1]^2: bilinear.
+    /// Bilinear interpolation at a point of the region, [0, 1]^2.
     Spectrum spectrum(Vec2f u) const;
 };
 
-/// A ghost of a source between two such directions: nothing of it that is exact.
+/// A ghost of a source between two cached directions. All values are approximate.
 struct KnownGhost {
-    std::array<std::shared_ptr<const GhostPlace>, 2> places;   // null: no light comes from there
-    float weight;                                              // of the second
-    FlareRectangle region;                                     // about
-    double share;                                              // the larger one
+    std::array<std::shared_ptr<const GhostPlace>, 2> places;   // null: no light from that direction
+    float weight;                                              // interpolation weight of the second
+    FlareRectangle region;                                     // approximate
+    double share;                                              // the larger of both shares
 
-    /// Between two directions, one of which at least has a place.
+    /// At least one of the directions must have a place.
     KnownGhost(std::shared_ptr<const GhostPlace> a, std::shared_ptr<const GhostPlace> b, float weight_of_b);
-    /// The regions of the two directions do not meet: the ghost has several parts, and each direction found another one.
+    /// Whether the regions of the two directions are disjoint: the ghost has several parts, and the directions found
+    /// different ones.
     bool jumps() const;
-    /// At a place of the front's square.
+    /// Approximate spectrum at a point of the front's square.
     GhostPlace::Spectrum spectrum(Vec2f at) const;
 };
 

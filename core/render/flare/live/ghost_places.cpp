@@ -13,13 +13,13 @@
 namespace dg {
 namespace {
 
-constexpr double kSteps = 12;         // angles from the axis to the frame's corner
-constexpr double kNearness = 0.0025;  // of a source, radii of the front over its distance: from one step to the next
-constexpr double kDim = 3e-4;         // share of all that the ghosts that are left out are worth at an angle, at most
-constexpr double kArrivals = 4e5;     // that a picture's ghosts get
+constexpr double kSteps = 12;         // angle steps from the axis to the frame's corner
+constexpr double kNearness = 0.0025;  // step of the nearness of a source, front radius over distance
+constexpr double kDim = 3e-4;         // limit of the share of dropped ghosts at an angle
+constexpr double kArrivals = 4e5;     // arrivals of all ghosts of a picture
 constexpr std::size_t kMostAngles = 64;
 
-/// Angle from the axis, and nearness, of a source as the middle of the front sees it.
+/// Angle from the axis and nearness of a source, relative to the center of the front.
 struct Seen {
     double angle, turn, nearness;
     Seen(const ExactLens::Ball& front, const MapSource& source) {
@@ -30,7 +30,7 @@ struct Seen {
     }
 };
 
-/// White, a point.
+/// A white point source.
 LiveSource white(const MapSource& shape) {
     SmallSource small{0, shape, {}, false, 0};
     small.points.push_back({{0, 0}, {1, 1, 1}, {}, {}});

@@ -1,8 +1,8 @@
-// ghost_places.h -- where the ghosts of a lens come through its front, by the angle of the source from the axis: found
-// when a source first stands near that angle, and kept while lens and frame stay the same.
+// ghost_places.h -- cache of the front regions of a lens's ghosts, by the angle of the source from the axis. Entries
+// are computed on demand, and are valid while lens and frame stay the same.
 //
-// Places are known at angles some degrees apart, for sources on one side, at some distance; rays of a picture then start
-// from what lies between the two next to it. So a picture is the same whether its places were kept or found for it.
+// Entries are at angles several degrees apart, for sources on one side at quantized distances. A picture interpolates
+// between the two nearest angles, so it does not depend on whether entries were cached.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -19,22 +19,22 @@ namespace dg {
 
 class GhostPlaces {
   public:
-    /// Whether places of such a lens can be kept: it is the same all around, and does not change meanwhile.
+    /// Whether the lens can be cached: it is rotationally symmetric and does not change during the exposure.
     static bool can_keep(const Camera& camera);
-    /// The angle about the axis at which a source stands: the square's sides turn with it.
+    /// Azimuth of a source about the axis, rad; the front's square is rotated by it.
     static double turn_of(const Camera& camera, const MapSource& source);
 
-    /// Takes lens and frame of the pictures that follow; whether they are those of the call before.
+    /// Sets lens and frame of the following pictures; returns whether they are unchanged.
     bool set_lens(const Camera& camera, const Sensor& sensor);
-    /// All ghosts of two reflections, for a source before that lens: nothing of those that do not matter.
+    /// All ghosts with two reflections for a source; empty entries for irrelevant ghosts.
     std::vector<std::optional<KnownGhost>> of(const FlareAim& aim, const MapSource& source, int threads);
-    /// Exact rays that of() has taken since set_lens().
+    /// Number of exact rays traced by of() since set_lens().
     std::size_t rays() const { return rays_; }
 
   private:
-    /// Angle and nearness in steps.
+    /// Lens, and quantized angle and nearness.
     using Key = std::tuple<std::string, int, int>;
-    using Places = std::shared_ptr<const std::vector<std::shared_ptr<const GhostPlace>>>;   // of all ghosts; null: dim
+    using Places = std::shared_ptr<const std::vector<std::shared_ptr<const GhostPlace>>>;   // per ghost; null: dim
     struct Angle {
         Places places;
         std::uint64_t used = 0;
@@ -43,9 +43,9 @@ class GhostPlaces {
     Places find(const FlareAim& aim, int angle, int near, int threads);
 
     std::string lens_;
-    Sensor frame_;          // a square about the axis that holds the frame, however that is turned
+    Sensor frame_;          // a square around the axis that contains the frame at any rotation
     double step_rad_ = 0;
-    std::map<Key, Angle> angles_;   // also of lenses before
+    std::map<Key, Angle> angles_;   // includes previous lenses
     std::uint64_t uses_ = 0;
     std::size_t rays_ = 0;
 };

@@ -5,9 +5,9 @@
 namespace dg {
 namespace {
 
-constexpr int kMargin = 2;   // nodes beside the frame
+constexpr int kMargin = 2;   // nodes outside the frame
 
-/// The three nodes about a pixel's centre: a quadratic B-spline, over the area of a square of nodes.
+/// Weights of the three nodes around a pixel center: a quadratic B-spline, over the area of a square of nodes.
 struct Weights {
     int first;
     std::array<float, 3> of;
@@ -62,7 +62,7 @@ void LightLayer::add_to(std::vector<Node>& pixels, const Grid& g, int level) con
 
 std::vector<float> LightLayer::pixels() const {
     std::vector<Node> sums(std::size_t(width_) * height_);
-    const Grid& fine = grids_[0];   // nodes at the middles of pixels
+    const Grid& fine = grids_[0];   // nodes at pixel centers
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x)
             sums[std::size_t(y) * width_ + x] = fine.nodes[std::size_t(y + kMargin) * fine.columns + x + kMargin];

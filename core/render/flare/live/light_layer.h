@@ -1,5 +1,5 @@
-// light_layer.h -- a picture's layer of light as floats, on grids of nodes some pixels apart: for pictures that pass by.
-// CoarseLight is the same in whole steps, which no order of sums changes.
+// light_layer.h -- a layer of light as floats, on grids of nodes several pixels apart, for interactive previews.
+// CoarseLight is the counterpart with integer sums, which do not depend on the order.
 #pragma once
 #include <array>
 #include <vector>
@@ -15,7 +15,7 @@ class LightLayer {
 
     LightLayer(int width, int height);
 
-    /// Light x px^2 at a place, px: onto the four nodes around it (a tent).
+    /// Adds light x px^2 at a position, px, to the four nodes around it (a tent).
     void add(int level, Vec2f px, Rgb light) {
         Grid& g = grids_[level];
         const float x = px.x * g.per_px + g.zero, y = px.y * g.per_px + g.zero;
@@ -27,7 +27,7 @@ class LightLayer {
         node[g.columns].add(light, (1 - fx) * fy), node[g.columns + 1].add(light, fx * fy);
     }
     void add(const LightLayer& other);
-    /// Row by row: R, G, B of pixels.
+    /// R, G, B of pixels, row by row.
     std::vector<float> pixels() const;
 
   private:
@@ -37,7 +37,7 @@ class LightLayer {
     };
     struct Grid {
         int columns, rows;
-        float per_px, zero;          // the node at 0
+        float per_px, zero;          // zero: position of the node at 0
         std::vector<Node> nodes;
     };
     void add_to(std::vector<Node>& pixels, const Grid& grid, int level) const;

@@ -13,21 +13,21 @@
 namespace dg {
 namespace {
 
-constexpr double kShare = 0.15;       // of all light, that a source must bring
+constexpr double kShare = 0.15;       // least share of all light of a source
 constexpr double kFewestArrivals = 3e5, kMostArrivals = 5.6e5;
-constexpr double kFewSteep = 0.2, kMostSteep = 0.6;   // shares of the worth in steep squares for which these suffice
-constexpr double kDim = 0.0015;        // share of all that the ghosts that are left out are worth, at most
+constexpr double kFewSteep = 0.2, kMostSteep = 0.6;   // share of steep squares for fewest and most arrivals
+constexpr double kDim = 0.0015;        // limit of the share of dropped ghosts
 constexpr int kShadows = 512, kSequence = -7;
-constexpr int kLayers = 4;            // which tasks draw on, and which are added in order: no bit depends on threads
+constexpr int kLayers = 4;            // added in a fixed order, for results independent of threads
 constexpr float kMm2 = 1e6f;          // in 1 m2
 
-/// Number of arrivals for a noise of a few percent. Arrivals in steep squares differ more in their light.
+/// Number of arrivals for a noise of a few percent. Arrivals in steep squares have a higher variance.
 double arrivals_for(double steep_share) {
     const double t = (steep_share - kFewSteep) / (kMostSteep - kFewSteep);
     return std::lerp(kFewestArrivals, kMostArrivals, std::clamp(t, 0., 1.));
 }
 
-/// Share of some rays to the source that are free.
+/// Estimated unoccluded share of a source.
 float free_share(const FlareAim& aim, const SmallSource& source) {
     const MapRays rays(aim.camera(), aim.sensor(), aim.ghost_lens(), aim.steps(0), source.shape);
     float seen = 0;
@@ -35,7 +35,7 @@ float free_share(const FlareAim& aim, const SmallSource& source) {
     for (int i = 0; i < kShadows; ++i) {
         PathSampler sampler(source.source, kSequence, std::uint32_t(i), 0);
         const CameraRandom u = sampler.camera();
-        const SmallSource::Point& p = source.point((float(i) + 0.5f) / kShadows);   // each as often as any other
+        const SmallSource::Point& p = source.point((float(i) + 0.5f) / kShadows);   // each point equally often
         const auto shadow = rays.shadow({u.lens * 2 - Vec2f{1, 1}, p.shift, 0}, p.from, p.moment.time);
         if (shadow) ++all, seen += aim.scene().visibility_along(*shadow, Wavelengths::sample(u.lambda))[0];
     }
@@ -56,7 +56,7 @@ std::vector<LiveSource> sources_of(const FlareAim& aim) {
     return chosen;
 }
 
-/// Ghosts by layers of about the same worth; the brightest come first.
+/// Distributes ghosts over layers of similar worth, by decreasing brightness.
 std::array<std::vector<LiveGhost*>, kLayers> layers_of(const std::vector<DrawnGhost>& all) {
     std::array<std::vector<LiveGhost*>, kLayers> layers;
     std::array<double, kLayers> worth{};
@@ -67,7 +67,7 @@ std::array<std::vector<LiveGhost*>, kLayers> layers_of(const std::vector<DrawnGh
     return layers;
 }
 
-/// On layers that are added in their order: the same bits on any number of threads.
+/// Draws on layers that are added in a fixed order, so that the result is bit-identical for any number of threads.
 std::vector<float> draw_all(const std::vector<DrawnGhost>& all, const Sensor& sensor, float unit, int threads) {
     const auto ghosts = layers_of(all);
     std::vector<std::unique_ptr<LightLayer>> layers(kLayers);
@@ -107,7 +107,7 @@ std::vector<float> LiveFlare::draw(const Scene& scene, const Camera& camera, Ren
     const double worth = choose(all, sensor, kDim);
     double steep = 0;
     for (const DrawnGhost& own : all) steep += own.ghost->steep_worth();
-    const double arrivals = arrivals_for(steep / worth) / worth;   // of each unit of worth
+    const double arrivals = arrivals_for(steep / worth) / worth;   // per unit of worth
     parallel_tasks(settings.threads, std::int64_t(all.size()),
                    [&](std::int64_t i) { all[std::size_t(i)].ghost->refine(arrivals); });
     const double per_px = double(kMm2) / std::get<ExactLens>(camera.lens).h0() / sensor.mm2_per_px();

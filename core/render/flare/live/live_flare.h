@@ -1,6 +1,6 @@
-// live_flare.h -- ghosts of the brightest small sources for a picture that follows a hand: some per cent off, and drawn anew
-// for each picture in a tenth of a second. Where ghosts come through the front is kept while the lens stays as it is
-// (ghost_places.h). FlareSheets and the passes draw the same exactly.
+// live_flare.h -- ghosts of the brightest small sources for interactive previews: redrawn for each picture in a tenth
+// of a second, with errors of several percent. The front regions of ghosts are cached while the lens does not change
+// (ghost_places.h). FlareSheets and the flare passes are the exact counterpart.
 #pragma once
 #include <cstddef>
 #include <mutex>
@@ -13,18 +13,18 @@ namespace dg {
 
 class LiveFlare {
   public:
-    /// Light, row by row, R, G and B of each pixel of the sensor. Of the settings: sensor, shutter and threads. Error for a
-    /// lens that is not traced. The first picture through a lens finds its ghosts anew; all others have the same bits
-    /// whatever was drawn before. The same bits on any number of threads.
+    /// R, G and B of each pixel of the sensor, row by row. Uses sensor, shutter and threads of the settings. Throws
+    /// Error for a lens that is not traced. Except for the first picture through a lens, which fills the cache, the
+    /// result does not depend on earlier pictures. It is bit-identical for any number of threads.
     std::vector<float> draw(const Scene& scene, const Camera& camera, RenderSettings settings);
 
     struct Facts {
-        int sources = 0;         // that shine on the lens; 0: all is black
-        int ghosts = 0;          // that were drawn
+        int sources = 0;         // sources that light the lens; 0: the layer is black
+        int ghosts = 0;          // drawn ghosts
         std::size_t rays = 0, arrivals = 0;
-        std::size_t ray_arrivals = 0;   // arrivals that were rays of their own
+        std::size_t ray_arrivals = 0;   // arrivals by exact rays
     };
-    /// Figures of the last picture.
+    /// Statistics of the last picture.
     const Facts& facts() const { return facts_; }
 
   private:

@@ -12,21 +12,21 @@
 namespace dg {
 namespace {
 
-constexpr int kLooks = 8;               // of a square
-constexpr float kUnseen = 0.3f;         // looks that count as having seen light, of a square where none did
-constexpr float kLostUnseen = 0.25f;    // the same where rays are lost
-constexpr float kLostMore = 1.2f;       // times as many arrivals there: looks are less sure
-constexpr double kWorthMore = 1500, kWorthMost = 6000;   // arrivals of a ghost that more nodes for its colours pay for
-constexpr double kWorthFine = 18;       // arrivals of a square that a finer grid pays for
-constexpr double kWorthWays = 50;       // the same where rays are lost: those of the finer grid spare others
-constexpr double kWorthRays = 40;       // arrivals of a square with steep glass that are worth rays of their own
-constexpr float kSteep = 0.2f;          // of the mean transmittance, from the least to the most
-constexpr float kBend = 0.7f;           // px, from straight between nodes, that is worth one
-constexpr int kGlassNodes = 4;          // at which transmittances are asked for
-constexpr float kAlmost = 0.1f;         // beyond an edge: what is beside it may be lit
+constexpr int kLooks = 8;               // samples per square
+constexpr float kUnseen = 0.3f;         // pseudo-count of lit samples, for squares without any
+constexpr float kLostUnseen = 0.25f;    // pseudo-count where rays are lost
+constexpr float kLostMore = 1.2f;       // factor on arrivals where rays are lost, as samples are less reliable
+constexpr double kWorthMore = 1500, kWorthMost = 6000;   // arrivals of a ghost that justify more colour nodes
+constexpr double kWorthFine = 18;       // arrivals of a square that justify a finer grid
+constexpr double kWorthWays = 50;       // arrivals that justify a finer grid where rays are lost
+constexpr double kWorthRays = 40;       // arrivals of a steep square that justify exact rays
+constexpr float kSteep = 0.2f;          // range of a steep transmittance, relative to its mean
+constexpr float kBend = 0.7f;           // px: deviation from linear between nodes that justifies a finer grid
+constexpr int kGlassNodes = 4;          // nodes at which transmittances are evaluated
+constexpr float kAlmost = 0.1f;         // clip value up to which neighbouring points may be lit
 constexpr int kWaves = LiveSource::kNodes;
 
-/// Fields of all nodes, one field after the other.
+/// Fields of all nodes, field by field.
 std::vector<float> planes_of(const std::vector<MapLanding>& nodes, int crossings) {
     const int count = int(nodes.size());
     std::vector<float> planes(std::size_t(MeshPatch::fields(crossings)) * count);
@@ -72,7 +72,7 @@ void LiveGhost::look_around() {
     if (!(most > 0)) squares_.clear();
 }
 
-/// Mean of its spectra, about: at nodes that let light through.
+/// Approximate mean of its spectra, from lit nodes.
 GhostPlace::Spectrum LiveGhost::glass() {
     std::vector<int> open;
     for (int n = 0; n < kNodes; ++n)
@@ -89,7 +89,7 @@ GhostPlace::Spectrum LiveGhost::glass() {
     return mean;
 }
 
-/// By the grid alone, as if the source were a point of one colour, with the mean of its spectra.
+/// Samples a square from the grid alone, for a monochromatic point source with the mean of its spectra.
 void LiveGhost::look(Square& s, MapBatch& b, const GlassChange& glass) {
     MeshPatch p = patch(s);
     p.glass = glass;
@@ -135,7 +135,7 @@ double LiveGhost::steep_worth() const {
     return sum;
 }
 
-/// Takes as many of its nodes for its colours as so many arrivals pay for.
+/// Chooses the density of colour nodes by the number of arrivals.
 void LiveGhost::divide(double own_arrivals) {
     step_ = own_arrivals > kWorthMost ? 1 : own_arrivals > kWorthMore ? 2 : 4, few_side_ = GhostGrid::kSquares / step_ + 1;
     few_.resize(std::size_t(few_side_) * few_side_);
@@ -167,7 +167,7 @@ void LiveGhost::refine(double arrivals) {
     }
 }
 
-/// Landings are not straight from node to node.
+/// Whether landings in a square are not linear between nodes.
 bool LiveGhost::bends(const Square& s) const {
     const auto off = [&](int x, int y, int dx, int dy) {
         if (x < dx || y < dy || x + dx >= kSide || y + dy >= kSide) return 0.f;
@@ -182,7 +182,7 @@ bool LiveGhost::bends(const Square& s) const {
     return most > kBend;
 }
 
-/// Transmittance changes too much across the square to be straight between its nodes.
+/// Whether transmittance varies too much across the square for linear interpolation.
 bool LiveGhost::is_steep(const Square& s) const {
     float least = std::numeric_limits<float>::infinity(), most = 0, sum = 0;
     int count = 0;
@@ -210,7 +210,7 @@ void LiveGhost::refine(Square& s) {
     fine_.insert(fine_.end(), planes.begin(), planes.end());
 }
 
-/// Squares of a finer grid: arrivals in one are rays of their own where rays at its corners are lost.
+/// Methods for the squares of a finer grid: exact rays where a ray at a corner is lost.
 LiveGhost::Ways LiveGhost::ways_of(const std::vector<MapLanding>& nodes) const {
     const float reach = CoarseLight::reach(LightLayer::kLevels - 1);
     Ways ways;

@@ -1,9 +1,9 @@
-// live_ghost.h -- a ghost of a small source for a picture that passes by: a mesh of exact rays, drawn by many arrivals that
-// cost an interpolation each.
+// live_ghost.h -- a ghost of a small source for interactive previews: a mesh of exact rays, drawn by a large number of
+// interpolated arrivals.
 //
-// A grid of rays finds the part of the front that the ghost comes through, and about how much light it brings. Some of its
-// nodes know how wavelength and point of the source change the landing. Squares with an edge, or in which landings bend,
-// have a finer grid if they bring enough light.
+// A grid of rays finds the part of the front where the ghost's light enters, and estimates its brightness. A subset of
+// the nodes stores derivatives of the landing with respect to wavelength and source point. Squares with an edge or with
+// curved landings are refined if they are bright enough.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -22,46 +22,46 @@ namespace dg {
 
 class LiveGhost {
   public:
-    /// All but the sensor outlives this. `known`: where it comes in and how its glass is, about; null: nothing is known.
+    /// The arguments except the sensor must outlive this. `known`: approximate region and spectra; may be null.
     LiveGhost(const MapRays& rays, const LiveSource& source, const Sensor& sensor, std::uint64_t key,
               const KnownGhost* known = nullptr);
 
     bool empty() const { return squares_.empty(); }
-    /// Adds its light, about.
+    /// Adds the approximate light of the ghost.
     void add_to(FlareTiles& tiles) const;
-    /// How many arrivals it is worth beside other ghosts.
+    /// Computes the worth of the ghost, which its number of arrivals is proportional to.
     double weigh(const FlareTiles& tiles);
-    /// The part of it in squares with steep transmittance.
+    /// Worth of squares with steep transmittance.
     double steep_worth() const;
-    /// Where it comes in and how its glass is, as finely as so many arrivals are worth of which it gets a share.
+    /// Region and spectra for the cache, at a resolution for the ghost's `share` of `arrivals`.
     GhostPlace place(double arrivals, double share);
-    /// Finds all that drawing takes, for so many arrivals for each unit of weigh().
+    /// Prepares drawing. `arrivals`: number of arrivals per unit of weigh().
     void refine(double arrivals);
-    /// `unit`: light of a pixel for light and unit areas of the front's square.
+    /// Draws the arrivals. `unit`: light of a pixel per light and unit area of the front's square.
     void draw(LightLayer& layer, float unit);
 
     std::size_t rays() const { return traced_; }
     std::size_t arrivals() const { return arrived_; }
-    /// Arrivals that were rays of their own.
+    /// Number of arrivals by exact rays.
     std::size_t ray_arrivals() const { return by_rays_; }
 
   private:
     static constexpr int kSide = GhostGrid::kSide, kNodes = kSide * kSide;
-    static constexpr int kSub = 4, kSubSide = kSub + 1, kSubNodes = kSubSide * kSubSide;   // squares of a finer grid
-    enum class Way : std::uint8_t { mesh, ray, dark };   // of arrivals
+    static constexpr int kSub = 4, kSubSide = kSub + 1, kSubNodes = kSubSide * kSubSide;   // finer grid of a square
+    enum class Way : std::uint8_t { mesh, ray, dark };   // method for arrivals
     using Ways = std::array<Way, kSub * kSub>;
     struct Square {
         int x, y;
-        float light = 0, root = 0;         // of what looks saw: mean, and root of the mean square
-        bool edge = false, lost = false;   // some rays are stopped; some have no landing
-        bool steep = false;                // transmittance changes much
-        Vec2f px{};            // where it lands, about
-        double worth = 0;      // arrivals
-        int fine = -1;         // first value of its own nodes
-        int ways = -1;         // of ways_: those of the squares of its finer grid; none: all are alike
+        float light = 0, root = 0;         // mean and RMS of the sampled light
+        bool edge = false, lost = false;   // a ray is blocked; a ray has no landing
+        bool steep = false;                // large variation of transmittance
+        Vec2f px{};            // approximate landing
+        double worth = 0;      // in arrivals
+        int fine = -1;         // index of its first value in fine_; -1: no finer grid
+        int ways = -1;         // index in ways_; -1: the same method for the whole square
         CellBlur blur{};
     };
-    struct Few {               // at one of few nodes of the grid
+    struct Few {               // data at a node of the coarse subset
         MeshPatch::Sets sets{};
         GhostPlace::Spectrum spectrum{};
         CellBlur blur{};
@@ -90,7 +90,7 @@ class LiveGhost {
     bool matters(int few) const;
     void divide(double own_arrivals);
     struct FewNodes {
-        std::vector<int> few, node;   // of few_, and the node of the grid in whose place each is traced
+        std::vector<int> few, node;   // indices in few_, and the grid node that is traced for each
     };
     FewNodes few_nodes() const;
     Vec2f place_of(int node) const { return grid_.at({float(node % kSide), float(node / kSide)}); }
@@ -114,14 +114,14 @@ class LiveGhost {
     const MapRays& rays_;
     const LiveSource& source_;
     Sensor sensor_;
-    const KnownGhost* known_;          // or null
-    std::uint32_t first_;              // of its numbers
+    const KnownGhost* known_;          // may be null
+    std::uint32_t first_;              // index of its first random number
     GhostGrid grid_;
-    std::vector<float> planes_;        // of the grid's nodes, field by field
-    std::vector<float> fine_;          // of the nodes of finer grids
-    std::vector<Ways> ways_;           // of finer grids where rays are lost
+    std::vector<float> planes_;        // values of the grid's nodes, field by field
+    std::vector<float> fine_;          // values of the nodes of finer grids
+    std::vector<Ways> ways_;           // for finer grids where rays are lost
     std::vector<Square> squares_;
-    int step_ = 0, few_side_ = 0;      // squares from one of few nodes to the next; nodes across
+    int step_ = 0, few_side_ = 0;      // squares between nodes of the coarse subset; its nodes along each axis
     std::vector<Few> few_;
     SheetSmooth smooth_{};
     std::size_t traced_ = 0, arrived_ = 0, by_rays_ = 0;

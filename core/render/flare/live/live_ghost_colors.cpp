@@ -1,4 +1,4 @@
-// live_ghost_colors.cpp -- what wavelengths and points of the source change of a ghost, at few nodes of its grid.
+// live_ghost_colors.cpp -- dependence of a ghost on wavelength and source point, at a subset of its grid's nodes.
 #include <algorithm>
 
 #include "render/flare/live/live_ghost.h"
@@ -9,12 +9,12 @@ namespace dg {
 namespace {
 
 constexpr int kWaves = LiveSource::kNodes;
-constexpr float kAlike = 0.1f;     // of the transmittance: what is known may be off by so much
-constexpr float kOutside = 0.2f;   // beyond an edge: what is farther has spectra of its own
+constexpr float kAlike = 0.1f;     // relative error of transmittance that is accepted from the cache
+constexpr float kOutside = 0.2f;   // clip value beyond which cached spectra are not used
 
 }  // namespace
 
-/// The sound node nearest to one of few, rather one that lets light through, or almost; nothing: there is none beside it.
+/// The sound node nearest to a coarse node, preferably lit or almost lit; empty if there is none in its neighbourhood.
 std::optional<int> LiveGhost::sound_near(int few) const {
     std::optional<int> best;
     int least = 1 << 20;
@@ -28,7 +28,7 @@ std::optional<int> LiveGhost::sound_near(int few) const {
     return best;
 }
 
-/// A square beside it brings light.
+/// Whether a neighbouring square sends light.
 bool LiveGhost::matters(int few) const {
     const int x = 2 * (few % few_side_) * step_, y = 2 * (few / few_side_) * step_;
     return std::ranges::any_of(squares_, [&](const Square& s) {
@@ -43,7 +43,7 @@ LiveGhost::FewNodes LiveGhost::few_nodes() const {
     return nodes;
 }
 
-/// At nodes of the grid: what is known of them; by rays where nothing is, or not what the grid's ray says.
+/// Spectra at nodes of the grid: cached, or by rays if there is no cache or if it disagrees with the grid's ray.
 std::vector<GhostPlace::Spectrum> LiveGhost::spectra(const std::vector<int>& nodes) {
     std::vector<GhostPlace::Spectrum> found(nodes.size());
     std::vector<MapRay> rays;
@@ -70,7 +70,7 @@ void LiveGhost::set_spectra(const FewNodes& nodes) {
     for (std::size_t i = 0; i < found.size(); ++i) few_[nodes.few[i]].spectrum = found[i];
 }
 
-/// The change over wavelengths and source.
+/// Traces the dependence on wavelength and source point.
 void LiveGhost::trace_sets(const FewNodes& nodes) {
     const int crossings = rays_.crossings();
     std::vector<MapRay> rays;
@@ -121,7 +121,7 @@ LiveGhost::Few LiveGhost::few_at(Vec2f node) const {
     return sum;
 }
 
-/// By the blur of edges and light about the few nodes.
+/// Computes the blur of edges and light at the coarse nodes.
 void LiveGhost::find_blur() {
     std::vector<SheetSmooth::CellLight> cells;
     for (int n = 0; n < int(few_.size()); ++n) {
@@ -150,7 +150,7 @@ void LiveGhost::find_blur() {
     smooth_ = SheetSmooth::of(cells);
 }
 
-/// The blur at the nearest of few nodes that have one.
+/// The blur at the nearest coarse node that has a blur.
 const CellBlur& LiveGhost::blur_near(const Square& s) const {
     static const CellBlur sharp{};
     const CellBlur* best = &sharp;

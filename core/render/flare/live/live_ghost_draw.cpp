@@ -1,4 +1,4 @@
-// live_ghost_draw.cpp -- arrivals of a ghost's squares, onto a layer of light.
+// live_ghost_draw.cpp -- draws arrivals of a ghost's squares to a layer of light.
 #include <algorithm>
 #include <cmath>
 
@@ -11,12 +11,12 @@
 namespace dg {
 namespace {
 
-constexpr int kFewest = 3;              // level of light from few arrivals
+constexpr int kFewest = 3;              // level of light of sparse arrivals
 constexpr int kGroups = LiveSource::kGroups;
-constexpr float kApart = 1;             // px, of groups of wavelengths that land together
-constexpr float kStoppedApart = 0.01f;  // of what is beyond an edge, of groups that are stopped together
+constexpr float kApart = 1;             // px: largest distance of wavelength groups that are drawn together
+constexpr float kStoppedApart = 0.01f;  // largest difference of clip values of groups that are drawn together
 
-/// Shares of the change to the nodes on either side of the middle wavelength.
+/// Weights of the differences to the wavelength nodes on either side of the middle.
 Vec2f lambda_weights(float u) {
     static const WavelengthScale scale = WavelengthScale::visible();
     const float l = float(scale(LiveSource::nm(u))) / kLambdaStep;
@@ -25,7 +25,7 @@ Vec2f lambda_weights(float u) {
 
 }  // namespace
 
-/// Arrivals of a square, by their numbers.
+/// Arrivals of a square, with their random numbers.
 struct LiveGhost::Arrivals {
     int count = 0;
     std::array<std::uint32_t, MapBatch::kSize> number;
@@ -53,7 +53,7 @@ void LiveGhost::draw(LightLayer& layer, float unit) {
     }
 }
 
-/// How an arrival at a place of a square, [0, 1)^2, finds where it lands.
+/// Method for an arrival at a point of a square, [0, 1)^2.
 LiveGhost::Way LiveGhost::way(const Square& s, Vec2f at) const {
     const Way all = s.lost || s.steep ? Way::ray : Way::mesh;
     if (s.ways < 0) return all;
@@ -61,7 +61,7 @@ LiveGhost::Way LiveGhost::way(const Square& s, Vec2f at) const {
     return own == Way::mesh && s.steep ? Way::ray : own;
 }
 
-/// `place`: of the wavelength, for a number in [0, 1).
+/// `place`: maps a number in [0, 1) to the position of the wavelength.
 template <typename Place>
 void LiveGhost::set(MapBatch& b, const Arrivals& some, const Place& place) const {
     const auto points = std::uint32_t(source_.small.points.size());
@@ -85,7 +85,8 @@ void LiveGhost::add(LightLayer& layer, const SheetLevel& levels, const Square& s
     }
 }
 
-/// Where colours land or are stopped apart, each arrival is a few groups of wavelengths, each in its place.
+/// Draws arrivals by interpolation. Where wavelengths differ in landing or clipping, each arrival is split into groups
+/// of wavelengths.
 void LiveGhost::draw_mesh(LightLayer& layer, const SheetLevel& levels, const Square& s, const Arrivals& some,
                           float times) const {
     MapBatch& b = thread_scratch<MapBatch>([] {});
@@ -106,7 +107,7 @@ void LiveGhost::draw_mesh(LightLayer& layer, const SheetLevel& levels, const Squ
     }
 }
 
-/// Each is a ray of one wavelength.
+/// Draws arrivals by exact rays of a single wavelength.
 void LiveGhost::draw_rays(LightLayer& layer, const SheetLevel& levels, const Square& s, const Arrivals& some, float times) {
     MapBatch& b = thread_scratch<MapBatch>([] {});
     const WavelengthPick pick(few_at({float(s.x) + 0.5f, float(s.y) + 0.5f}).spectrum);
@@ -125,7 +126,7 @@ LiveGhost::GroupColors LiveGhost::colors_of(const Few& few, float times) const {
     return colors;
 }
 
-/// Groups of wavelengths land in other places, or another part of them is stopped.
+/// Whether groups of wavelengths differ in landing or clipping.
 bool LiveGhost::apart(const Square& s, const MeshPatch& p) const {
     const auto change = [&](int field) {
         static const std::array<Vec2f, 2> ends = {lambda_weights(0.5f / kGroups), lambda_weights(1 - 0.5f / kGroups)};
@@ -141,7 +142,7 @@ bool LiveGhost::apart(const Square& s, const MeshPatch& p) const {
     return most > kStoppedApart;
 }
 
-/// Each by a ray of its own: where some have no landing, nothing can be interpolated.
+/// Traces a ray for each arrival, as landings cannot be interpolated next to lost rays.
 void LiveGhost::land_by_rays(const Square& s, MapBatch& b, int count) {
     std::vector<MapRay> rays;
     for (int i = 0; i < count; ++i)
@@ -158,7 +159,7 @@ void LiveGhost::land_by_rays(const Square& s, MapBatch& b, int count) {
     }
 }
 
-/// At which a node gets an arrival of the square, about.
+/// Level at which each node receives about one arrival of the square.
 float LiveGhost::least_level(const Square& s) const {
     const MapLanding &a = node(s.x, s.y), &b = node(s.x + 1, s.y), &c = node(s.x, s.y + 1), &d = node(s.x + 1, s.y + 1);
     if (s.lost) return 0;

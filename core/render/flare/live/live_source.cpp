@@ -9,13 +9,13 @@ namespace dg {
 namespace {
 
 constexpr int kNodes = LiveSource::kNodes, kSteps = LiveSource::kSteps;
-constexpr float kAllAlike = 2;    // times the middle's transmittance, that of all light: it changes with the middle's
-constexpr float kBeyond = 0.1f;   // steps from the last nodes: the cubic is good for no more
+constexpr float kAllAlike = 2;    // ratio of total to middle transmittance up to which both change in proportion
+constexpr float kBeyond = 0.1f;   // extrapolation limit of the cubic beyond the last nodes, in steps
 
 float sampled_nm(float u) { return Wavelengths::sample(u).nm[0]; }
 
-/// A cubic through the four nodes about a wavelength. Coatings reflect most where little is seen, at either end of the
-/// spectrum, and steeply more toward it: even or straight between nodes, some per cent of the light would be off.
+/// Weights of a cubic through the four nodes around a wavelength. Reflectance of coatings rises steeply toward both
+/// ends of the spectrum: constant or linear interpolation would cause errors of several percent.
 struct NodeWeights {
     int first;
     std::array<float, 4> of;
@@ -68,8 +68,8 @@ float LiveSource::light_of(const std::array<float, kNodes>& spectrum) const {
     return light;
 }
 
-/// Where little of the light is at the middle wavelength, as between the two ends of a spectrum that a coating leaves, it
-/// changes less.
+/// If the middle wavelength has little of the light, as with coatings that reflect only the ends of the spectrum, the
+/// total changes less than the middle.
 GlassChange LiveSource::change(const std::array<float, kNodes>& spectrum) const {
     static const NodeWeights middle(lambda_node(1));
     const float light = light_of(spectrum);

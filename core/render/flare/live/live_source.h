@@ -1,5 +1,5 @@
-// live_source.h -- a small source as pictures that pass by draw it: its points, and its colours by the transmittance at
-// some wavelengths.
+// live_source.h -- a small source for interactive previews: its points, and its colours as functions of the
+// transmittance at several wavelengths.
 #pragma once
 #include <array>
 #include <vector>
@@ -10,27 +10,27 @@
 namespace dg {
 
 struct LiveSource {
-    static constexpr int kNodes = 16, kSteps = 960;   // of the wavelength
-    static constexpr int kGroups = 3;                 // of wavelengths, which land apart from each other
+    static constexpr int kNodes = 16, kSteps = 960;   // wavelength nodes; steps of the table `at`
+    static constexpr int kGroups = 3;                 // groups of wavelengths with separate landings
     SmallSource small;
-    /// An arrival of all wavelengths has these, by groups, for each unit of transmittance at a node.
+    /// Colours of an arrival with all wavelengths, per group, per unit of transmittance at a node.
     std::array<std::array<Rgb, kNodes>, kGroups> colors;
-    std::array<Rgb, kSteps> at;       // of an arrival of one wavelength, see nm(), for each unit of transmittance
-    std::array<float, kNodes> seen;   // luminance of the same, over that of all of them
-    std::vector<float> brightness;   // of its points, over their mean
-    float free;                      // share of its light that nothing in the scene is in the way of
-    double light;                    // of that share
+    std::array<Rgb, kSteps> at;       // colour of an arrival at wavelength nm(), per unit of transmittance
+    std::array<float, kNodes> seen;   // share of the luminance per node
+    std::vector<float> brightness;   // of its points, relative to their mean
+    float free;                      // unoccluded share of its light
+    double light;                    // unoccluded light
 
     LiveSource(SmallSource own, float free_share);
-    /// Luminance that a transmittance leaves of its light.
+    /// Luminance of its light after a transmittance.
     float light_of(const std::array<float, kNodes>& spectrum) const;
-    /// How light of this transmittance changes with the one at the middle wavelength, see lambda_node(1).
+    /// Dependence of its light on the transmittance at the middle wavelength, lambda_node(1).
     GlassChange change(const std::array<float, kNodes>& spectrum) const;
-    /// u in [0, 1), evenly as wavelengths are seen: its group is int(u * kGroups).
+    /// Wavelength for u in [0, 1), uniform in visible light; its group is int(u * kGroups).
     static float nm(float u);
-    /// Wavelengths of the nodes, even in the wavenumber, as the reflectance of coatings changes: from 388 to 700 nm.
+    /// Wavelengths of the nodes, uniform in wavenumber like the reflectance of coatings, from 388 to 700 nm.
     static float node_nm(int k) { return 1e3f / (kFirst - kStep * float(k)); }
-    /// Place of a wavelength among the nodes, from 0 on.
+    /// Fractional index of a wavelength among the nodes.
     static float node_of(float nm) { return (kFirst - 1e3f / nm) / kStep; }
 
   private:

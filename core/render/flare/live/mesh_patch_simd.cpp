@@ -11,7 +11,7 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-/// Place in a square, and the square's first node.
+/// Position in a square, and index of the square's first node.
 struct InSquare {
     VI node;
     V u, v;

@@ -6,8 +6,8 @@
 namespace dg {
 namespace {
 
-constexpr int kReach = 1;       // nodes from those with a landing
-constexpr float kDark = 1e3f;   // beyond edges, of nodes farther away
+constexpr int kReach = 1;       // nodes: distance of filled nodes from nodes with a landing
+constexpr float kDark = 1e3f;   // clip value of nodes farther away
 
 MapLanding& operator+=(MapLanding& a, const MapLanding& b) {
     a.px = a.px + b.px, a.pass += b.pass;

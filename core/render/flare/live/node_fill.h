@@ -1,4 +1,4 @@
-// node_fill.h -- values for nodes of a grid at which rays are lost, from those beside them.
+// node_fill.h -- extrapolates values to grid nodes with lost rays from their neighbours.
 #pragma once
 #include <utility>
 #include <vector>
@@ -7,11 +7,11 @@
 
 namespace dg {
 
-/// Gives landings to the nodes without one that lie beside others, along straight lines; how far beyond an edge they are
-/// stays. `side`: nodes across.
+/// Extrapolates landings linearly to nodes without a landing next to nodes with a landing; clip values are not changed.
+/// `side`: nodes per row.
 void fill_landings(std::vector<MapLanding>& nodes, int side);
 
-/// Calls fill(node, nodes beside it) for the nodes that are not sound but lie beside sound ones, until all of them are.
+/// Calls fill(node, neighbours) for nodes that are not sound but have sound neighbours, until all nodes are sound.
 template <typename Fill>
 void fill_from_beside(std::vector<bool> sound, int side, const Fill& fill) {
     for (bool more = true; more;) {

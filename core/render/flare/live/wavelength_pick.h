@@ -1,4 +1,5 @@
-// wavelength_pick.h -- wavelengths of arrivals of one color each, as often as the glass lets them pass: less noise of color.
+// wavelength_pick.h -- samples wavelengths of single-color arrivals by the transmittance of the glass, to reduce color
+// noise.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -12,10 +13,10 @@ class WavelengthPick {
   public:
     struct Picked {
         float place;    // see LiveSource::nm()
-        float weight;   // of its light
+        float weight;   // factor on its light
     };
 
-    /// `spectrum`: transmittance at the source's nodes, about.
+    /// `spectrum`: approximate transmittance at the source's nodes.
     explicit WavelengthPick(const std::array<float, LiveSource::kNodes>& spectrum) {
         std::array<float, kBins> light{};
         float sum = 0;
@@ -28,7 +29,7 @@ class WavelengthPick {
         }
     }
 
-    /// u in [0, 1).
+    /// Samples a wavelength with u in [0, 1).
     Picked operator()(float u) const {
         int bin = 0;
         while (bin < kBins - 1 && u >= end_[bin]) ++bin;
@@ -37,8 +38,8 @@ class WavelengthPick {
     }
 
   private:
-    static constexpr int kBins = 16;         // equally bright ones
-    static constexpr float kEven = 0.5f;     // share of the picks that ignores the spectrum, as it is not exact
+    static constexpr int kBins = 16;         // bins of equal brightness
+    static constexpr float kEven = 0.5f;     // uniform share of the samples, as the spectrum is not exact
 
     static float passed(const std::array<float, LiveSource::kNodes>& spectrum, float nm) {
         const float place = std::clamp(LiveSource::node_of(nm), 0.f, float(LiveSource::kNodes - 1));

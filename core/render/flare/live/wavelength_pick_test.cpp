@@ -8,7 +8,7 @@ namespace {
 
 using Transmittance = std::array<float, LiveSource::kNodes>;
 
-/// Mean of f(place) over picks, with their weights.
+/// Weighted mean of f(place) over samples.
 template <typename F>
 double mean(const WavelengthPick& pick, const F& f) {
     constexpr int kCount = 100000;

@@ -11,7 +11,7 @@ namespace {
 constexpr int kLeft = kRimNode - 1, kRight = kRimNode + 1, kAbove = kRimNode - GhostMap::kSide,
               kBelow = kRimNode + GhostMap::kSide;
 
-/// Columns.
+/// A 2 x 2 matrix by columns.
 struct Mat2 {
     Vec2f a, b;
 };
@@ -51,7 +51,7 @@ Vec2f clip_gradient(const Derivatives& d, const Mat2& landing) {   // over the f
     return transposed(inverse(landing), {over_cell.a.x, over_cell.b.x});
 }
 
-/// Blur of the edge of a mount.
+/// Blur of the image of a mount's edge, px.
 float mount_blur(const Derivatives& d, const Mat2& landing, const Mat2& moved) {
     const Mat2 over_source = d.over_source([](const MapLanding& l) { return Vec2f{l.beyond, 0}; });
     const Vec2f gradient = clip_gradient(d, landing);
@@ -59,13 +59,13 @@ float mount_blur(const Derivatives& d, const Mat2& landing, const Mat2& moved) {
     return length(change) / length(gradient);
 }
 
-/// Blur of edges of the iris, in whatever direction, as a crossing shows it.
+/// Blur of the image of the iris at a crossing, px, in the worst direction.
 float iris_blur(const Derivatives& d, int crossing, const Mat2& landing, const Mat2& moved) {
     const auto place = [&](const MapLanding& l) { return l.iris[crossing]; };
     return least_stretch(moved - landing * (inverse(d.over_cell(place)) * d.over_source(place)));
 }
 
-/// From how much area of the film the squares between nodes have.
+/// Estimated from the film areas of the squares between nodes.
 float even_px(const CellRays& rays) {
     float least = 1e30f, most = 0, reach = 0;
     bool up = false, down = false;
@@ -107,7 +107,7 @@ CellBlur cell_blur(const CellRays& rays, const Iris& iris, double iris_radius) {
     const Mat2 landing = d.over_cell(px), moved = d.over_source(px);
     CellBlur blur;
     blur.light = blur.edge = least_stretch(moved);
-    const auto add = [&](float edge) {   // not a number: no edge that can be told, as sharp as can be
+    const auto add = [&](float edge) {   // NaN: the edge is unknown and counts as sharp
         blur.edge = edge >= 0 ? std::min(blur.edge, edge) : 0;
     };
     const auto finite = [](float v) { return std::isfinite(v) ? v : 0; };

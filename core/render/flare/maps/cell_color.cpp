@@ -12,7 +12,7 @@ constexpr float kStepNm = (kMaxWavelength - kMinWavelength) / (kFine - 1);
 
 float node_nm(int k) { return spectrum_node(float(k) / GhostMap::kFine); }
 
-/// How much of white light is seen at the nodes of the fine spectrum: what wavelengths are drawn by.
+/// Visibility of white light at the nodes of the fine spectrum, for sampling wavelengths.
 const std::array<float, kFine>& seen() {
     static const auto made = [] {
         const ColorTable table{Responses()};
@@ -27,7 +27,7 @@ const std::array<float, kFine>& seen() {
     return made;
 }
 
-/// Adds a node's value of a spectrum.
+/// Adds a spectrum's value at a node.
 void add_node(ColorTable::Parts& to, const ColorTable::Parts& node, float value) {
     for (std::size_t part = 0; part < to.size(); ++part)
         for (std::size_t i = 0; i < to[part].size(); ++i) to[part][i] += value * node[part][i];
@@ -46,9 +46,9 @@ CellColor::CellColor(const GhostMap& map, const GhostMap::Cell& cell, bool gray,
     if (gray) sum_up(map.fine(cell), map.corners(cell));
 }
 
-/// Quantiles of the light that is seen.
+/// Computes the quantiles of visible light that wavelengths are sampled by.
 void CellColor::draw_by(const float* fine) {
-    std::array<float, kFine> below{};   // light up to a node, linear between nodes
+    std::array<float, kFine> below{};   // cumulative light at nodes, linear between them
     for (int k = 1; k < kFine; ++k)
         below[k] = below[k - 1] + 0.5f * (seen()[k - 1] * fine[k - 1] + seen()[k] * fine[k]);
     int k = 0;
@@ -59,7 +59,7 @@ void CellColor::draw_by(const float* fine) {
         const float part = own > 0 ? std::clamp((want - below[k]) / own, 0.f, 1.f) : 0;
         quantile_[i] = kMinWavelength + kStepNm * (float(k) + part);
     }
-    quantile_[0] = kMinWavelength, quantile_[kSteps] = kMaxWavelength;   // all that there is can be drawn
+    quantile_[0] = kMinWavelength, quantile_[kSteps] = kMaxWavelength;   // covers the whole spectrum
 }
 
 void CellColor::sum_up(const float* fine, const float* corners) {
@@ -88,7 +88,7 @@ FilmColor CellColor::of(const MapBatch& b, int i, Rgb light, float times) const 
         for (int c = 0; c < kCorners; ++c) add_light(color, corners_[c], light, times * weights[c]);
         return color;
     }
-    const auto after = std::ranges::upper_bound(quantile_, b.nm[i]);   // density of nm(u): of the step that it is in
+    const auto after = std::ranges::upper_bound(quantile_, b.nm[i]);   // density of nm(u), constant in each step
     const int step = std::clamp(int(after - quantile_.begin()) - 1, 0, kSteps - 1);
     colors_.table.add(color, light, b.nm[i], times * b.pass[i] * (quantile_[step + 1] - quantile_[step]) * kSteps);
     return color;

@@ -1,5 +1,5 @@
-// cell_color.h -- the colour that a cell of a ghost's map gives to light: of all wavelengths at once where they land
-// together, else of one at a time, drawn by the light that it brings.
+// cell_color.h -- colour of light in a map cell: integrated over all wavelengths if they land together, else from a
+// single wavelength, sampled by its contribution.
 #pragma once
 #include <array>
 
@@ -8,26 +8,26 @@
 
 namespace dg {
 
-/// Tables that all cells share.
+/// Tables shared by all cells.
 struct CellColors {
     ColorTable table;
-    std::vector<ColorTable::Parts> fine, coarse;   // nodes of the spectra of a map
+    std::vector<ColorTable::Parts> fine, coarse;   // at the nodes of a map's spectra
     explicit CellColors(const Responses& responses)
         : table(responses), fine(table.nodes(GhostMap::kFineSpectrum)), coarse(table.nodes(GhostMap::kSpectrum)) {}
 };
 
 class CellColor {
   public:
-    /// Takes a cell that is not exact. `gray`: its colours count as one place. All outlives this.
+    /// `cell` must not be exact. `gray`: all wavelengths land at the same point. The arguments must outlive this.
     CellColor(const GhostMap& map, const GhostMap::Cell& cell, bool gray, const CellColors& colors);
 
-    /// All wavelengths go the way of nm().
+    /// Whether all wavelengths land at the point of nm().
     bool gray() const { return gray_nm_ > 0; }
     float nm() const { return gray_nm_; }
-    /// One of the wavelengths, by u in [0, 1).
+    /// Samples a wavelength, nm, with u in [0, 1).
     float nm(float u) const;
-    /// Light of one of a batch of landings, times so much: all of it if it is gray, or an estimate from the
-    /// wavelength that nm(u) drew.
+    /// Colour of landing i of a batch, scaled by `times`: integrated over wavelengths if gray, else an estimate from
+    /// the wavelength that nm(u) sampled.
     FilmColor of(const MapBatch& batch, int i, Rgb light, float times) const;
 
   private:
@@ -38,8 +38,8 @@ class CellColor {
 
     const CellColors& colors_;
     float gray_nm_ = 0;
-    ColorTable::Parts middle_{};                          // per transmittance of the middle wavelength
-    std::array<ColorTable::Parts, kCorners> corners_{};   // to be added
+    ColorTable::Parts middle_{};                          // per transmittance at the middle wavelength
+    std::array<ColorTable::Parts, kCorners> corners_{};   // differences at the corners
     std::array<float, kSteps + 1> quantile_{};            // nm
 };
 

@@ -35,7 +35,7 @@ HWY_INLINE U scrambled(U v, std::uint32_t seed) {
     return hn::Xor(v, hn::Mul(v, word(0x53a22864u)));
 }
 
-/// Points whose words, but for the high bits, are `run`.
+/// Computes points from the low words `run` and the high bits.
 void Fill(const std::uint32_t* run, std::uint32_t high, std::uint32_t seed, float* to, int count) {
     const DU d;
     const hn::RebindToFloat<DU> df;
@@ -62,7 +62,7 @@ constexpr int kDimensions = CellNumbers::kDimensions, kRun = CellNumbers::kMost 
 using Words = std::array<std::uint32_t, kDimensions>;
 constexpr auto kDirections = sobol_directions();
 
-/// Unscrambled, reversed.
+/// Sobol words of a point, unscrambled and bit-reversed.
 Words words(std::uint32_t i) {
     Words w{i, sobol_second_reversed(i), 0, 0, 0};
     for (int bit = 0; i >> bit; ++bit)
@@ -70,7 +70,7 @@ Words words(std::uint32_t i) {
     return w;
 }
 
-/// Those of a run's first points; of the others they differ by the words of where it begins.
+/// Words of the first run of points. Later runs differ from it by the words of their first index.
 const std::array<std::array<std::uint32_t, kRun>, kDimensions>& run() {
     static const auto made = [] {
         std::array<std::array<std::uint32_t, kRun>, kDimensions> all{};

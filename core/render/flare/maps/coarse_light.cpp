@@ -12,37 +12,37 @@
 namespace dg {
 namespace {
 
-constexpr int kFraction = 30;       // bits by which steps are finer than the mean
-constexpr int kSharpenBits = 8;     // of the weights of level 0
-constexpr float kMost = 1 << 20;    // nodes from the frame: far beside it
-constexpr double kTent = 1 / 6.0;   // its variance
-constexpr int kRowsOfTask = 32;         // of the film
-constexpr double kOfFrame = 1 / 70.0;   // of the diagonal: the widest kernel's RMS width along an axis
+constexpr int kFraction = 30;       // bits of the step below the mean
+constexpr int kSharpenBits = 8;     // bits of the weights of level 0
+constexpr float kMost = 1 << 20;    // nodes: limit of the distance from the frame
+constexpr double kTent = 1 / 6.0;   // variance of a tent
+constexpr int kRowsOfTask = 32;         // film rows per task
+constexpr double kOfFrame = 1 / 70.0;   // fraction of the diagonal: RMS width of the widest kernel along an axis
 
-/// Steps so many bits below a value, but no finer than what weights leave of the bits of a sum.
+/// Exponent of the step, `bits` below a value, but limited by the bits that weights leave in a sum.
 int bits_below(double value, int bits, int most) {
     const double wanted = value > 0 ? bits - std::floor(std::log2(value)) : 0;
     return int(std::clamp(wanted, -40.0, double(most)));
 }
 
-/// Integral of the square of the kernel along an axis, in nodes: of a B-spline of degree 4, which a tent and a parabola are
-/// together; on level 0 of a tent of which c times its second difference is taken off.
+/// Integral of the squared kernel along an axis, in nodes. The kernel is a B-spline of degree 4, the convolution of a
+/// tent and a quadratic B-spline; on level 0, a tent minus c times its second difference.
 double square_of_kernel(int level, double c) {
     if (level > 0) return 0.43041478;
     return ((1 + 2 * c) * (1 + 2 * c) + 2 * c * c) * 2 / 3 - 4 * c * (1 + 2 * c) / 6;
 }
 
-/// In [0, 1), by a place.
+/// Hash of a position, in [0, 1).
 double chance_of(Vec2f px) {
     const std::uint64_t x = std::bit_cast<std::uint32_t>(px.x), y = std::bit_cast<std::uint32_t>(px.y);
     return hash_uniform(x << 32 | y, 0);
 }
 
-/// Bits after the point of the weights of an axis.
+/// Fractional bits of the weights along an axis.
 int weight_bits(int level) { return level > 0 ? 3 + 2 * level : kSharpenBits; }
 
-/// The three nodes about a pixel's centre and their weights, times 2^weight_bits: a quadratic B-spline; on level 0, where
-/// nodes are pixels, what makes a tent as wide as the filter.
+/// The three nodes around a pixel center and their weights, times 2^weight_bits: a quadratic B-spline. On level 0,
+/// where nodes are pixels, weights that widen a tent to the variance of the filter.
 struct Weights {
     int first;
     std::array<std::int64_t, 3> of;
@@ -52,7 +52,7 @@ struct Weights {
             of = {-sharpen, (1 << kSharpenBits) + 2 * sharpen, -sharpen}, first = pixel + zero - 1;
             return;
         }
-        const std::int64_t p = std::int64_t(1) << level, twice = 2 * std::int64_t(pixel) + 1;   // of the centre
+        const std::int64_t p = std::int64_t(1) << level, twice = 2 * std::int64_t(pixel) + 1;   // pixel center
         const std::int64_t nearest = (twice + p) >> (level + 1);                                // rounded, in nodes
         const std::int64_t n = twice - nearest * 2 * p;                                         // in [-p, p)
         of = {(p - n) * (p - n), 6 * p * p - 2 * n * n, (p + n) * (p + n)};
@@ -91,14 +91,14 @@ CoarseLight::CoarseLight(const FilmLayout& region, int values, int level, double
     to_square_steps_ = std::ldexp(square * square, square_bits_ - 4 * level);
 }
 
-/// In nodes, of which node kMargin is at 0, whatever part of the frame this is; those of level 0 lie at the middles of
-/// pixels.
+/// Position in node spacings, with node kMargin at 0 for every region of the frame. Nodes of level 0 are at pixel
+/// centers.
 Vec2f CoarseLight::in_nodes(Vec2f px) const {
     const float per_pitch = 1 / float(1 << level_), zero = kMargin - (level_ == 0 ? 0.5f : 0);
     return {px.x * per_pitch + zero, px.y * per_pitch + zero};
 }
 
-/// The upper left one of the four nodes around a place; nothing: too far from the region.
+/// The upper left of the four nodes around a position; empty if it is too far from the region.
 std::optional<CoarseLight::Node> CoarseLight::node_of(Vec2f px) const {
     const Vec2f at = in_nodes(px);
     if (!(at.x >= 0 && at.y >= 0 && at.x < kMost && at.y < kMost)) return std::nullopt;
@@ -107,7 +107,7 @@ std::optional<CoarseLight::Node> CoarseLight::node_of(Vec2f px) const {
     return Node{column, row, at.x - float(x), at.y - float(y)};
 }
 
-/// Band by band, so that a lock serves many.
+/// Adds arrivals band by band, to share locks.
 void CoarseLight::add(std::span<const Arrival> arrivals) {
     std::vector<std::uint32_t> begin(locks_.size() + 1), order(arrivals.size());
     std::vector<std::optional<Node>> nodes(arrivals.size());
@@ -119,15 +119,15 @@ void CoarseLight::add(std::span<const Arrival> arrivals) {
         if (nodes[i]) order[next[nodes[i]->row / kBandRows]++] = std::uint32_t(i);
     for (std::size_t band = 0; band + 1 < begin.size(); ++band) {
         if (begin[band] == begin[band + 1]) continue;
-        const std::lock_guard own(locks_[band]);   // its last row adds to the first of the band below
+        const std::lock_guard own(locks_[band]);   // the last row also adds to the first row of the band below
         const std::unique_lock below = band + 1 < locks_.size() ? std::unique_lock(locks_[band + 1])
                                                                 : std::unique_lock<std::mutex>();
         for (std::uint32_t k = begin[band]; k < begin[band + 1]; ++k) add(arrivals[order[k]], *nodes[order[k]]);
     }
 }
 
-/// Parts of steps are dropped: far less than arrivals leave open. Squares of what is dim beside the picture may be such
-/// parts: where light arrives as one, whole steps by chance stand for them.
+/// Truncates light to whole steps; the error is far below the noise. Squares of dim arrivals may be below a step: for
+/// arrivals that count as one, they are rounded stochastically.
 void CoarseLight::add(const Arrival& a, const Node& at) {
     const Rgb rgb = a.as_one ? *a.as_one : rgb_from_xyz({a.light[0], a.light[1], a.light[2]});
     const double up = a.as_one ? chance_of(a.px) : 0;

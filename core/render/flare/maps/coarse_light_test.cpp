@@ -34,7 +34,7 @@ void add(CoarseLight& light, Vec2f px, float v) {
     light.add({&one, 1});
 }
 
-/// Lights of all kinds, anywhere about the frame.
+/// Adds lights of different kinds inside and around the frame.
 void scatter(CoarseLight& light, int first, int last) {
     for (int i = first; i < last; ++i) {
         PathSampler sampler(3, 4, std::uint32_t(i), 5);
@@ -61,7 +61,7 @@ TEST_CASE("light on coarse nodes comes to the pixels whole, where it was, and as
         CHECK(sum == doctest::Approx(5).epsilon(1e-5));
         CHECK(x / sum == doctest::Approx(at.x).epsilon(1e-5));
         CHECK(y / sum == doctest::Approx(at.y).epsilon(1e-5));
-        // Two nodes, then the spline over pixels; or what makes them the filter in the mean over places.
+        // Two nodes, resampled by the spline; on level 0, by weights that give the filter on average.
         const double p = 1 << level, shift = level == 0 ? 0.5 : 0, f = at.x / p - shift - std::floor(at.x / p - shift);
         const double spline = level == 0 ? kFilter - 1 / 6.0 : 0.25;
         CHECK(wide / sum == doctest::Approx(p * p * (f * (1 - f) + spline)).epsilon(0.02));
@@ -121,7 +121,7 @@ TEST_CASE("coarse light of a thousandth of the mean keeps its sum, and its squar
         for (int x = 0; x < kWide; ++x) sum += drawn.y(x, y);
     CHECK(sum == doctest::Approx(1e3 * kCount).epsilon(1e-3));
 
-    // Many arrivals: the variance that the film tells is that of the pixels' values.
+    // Many arrivals: the film's variance estimate agrees with the variance of pixel values.
     constexpr int kPictures = 400, kLights = 60, kX = 33, kY = 20;
     double mean = 0, squares = 0, told = 0;
     for (int k = 0; k < kPictures; ++k) {
@@ -137,6 +137,6 @@ TEST_CASE("coarse light of a thousandth of the mean keeps its sum, and its squar
         mean += v / kPictures, squares += v * v / kPictures;
         told += double(picture.film.variance_rgb()[3 * (std::size_t(kY) * kWide + kX) + 1]) / kPictures;
     }
-    const double variance = squares - mean * mean;   // of a number of lights that is fixed: a little less
+    const double variance = squares - mean * mean;   // slightly low, as the number of lights is fixed
     CHECK(told == doctest::Approx(variance).epsilon(0.25));
 }

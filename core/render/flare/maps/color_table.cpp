@@ -8,9 +8,9 @@ namespace {
 
 constexpr int kNodes = Responses::kNodes;
 constexpr Rgb kParts[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-constexpr int kPerNm = 4;   // steps of an integral
+constexpr int kPerNm = 4;   // integration steps
 
-/// Sums at each nm: of D65's luminance, and of the curve of luminance.
+/// Cumulative sums over nm of D65's luminance and of the luminance curve.
 struct Sums {
     double white = 0, curve = 0;
     Sums() {
@@ -39,7 +39,8 @@ float seen_light(float nm) {
     return at_nm[std::size_t(std::clamp(std::lround(nm - kMinWavelength), 0l, long(kNodes - 1)))];
 }
 
-/// Scaled as Wavelengths are: Rgb 1, 1, 1 is D65 with Y = 1; a channel weighs D65 with the mean 1 under that curve.
+/// Scaled like Wavelengths: Rgb 1, 1, 1 is D65 with Y = 1; a channel's weight of D65 has the mean 1 over the luminance
+/// curve.
 ColorTable::ColorTable(const Responses& responses) : values_(3 + responses.count()), per_nm_(kNodes) {
     const Sums sums;
     for (int k = 0; k < kNodes; ++k) {

@@ -1,5 +1,5 @@
-// color_table.h -- light as the sums of a film, XYZ and then the channels of a sensor: of one wavelength, or of a spectrum
-// that is linear between some nodes.
+// color_table.h -- converts light to the sums of a film, XYZ and sensor channels: light of a single wavelength, or of a
+// piecewise linear spectrum.
 #pragma once
 #include <array>
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace dg {
 
-/// XYZ and channels; as many as a SIMD register likes.
+/// XYZ and channels, padded to a SIMD register.
 using FilmColor = std::array<float, 8>;
 static_assert(3 + Responses::kMost <= 8);
 
-/// How much of a wavelength that Wavelengths::sample drew is seen: |R| + |G| + |B| of white light, over the chance that it
-/// was drawn; 1 in the mean.
+/// Visibility of a wavelength sampled by Wavelengths::sample: |R| + |G| + |B| of white light over its density; the mean
+/// is 1.
 float seen_light(float nm);
 
 class ColorTable {
@@ -22,16 +22,16 @@ class ColorTable {
     explicit ColorTable(const Responses& responses);
 
     int values() const { return values_; }
-    /// Adds `times` the color, per nm, of light (Rgb, as Wavelengths::emission takes it) at a wavelength.
+    /// Adds the color, per nm, of light at a wavelength, scaled by `times`. `light`: Rgb as for Wavelengths::emission.
     void add(FilmColor& color, Rgb light, float nm, float times) const;
 
-    using Parts = std::array<FilmColor, 3>;   // of R, G and B
-    /// Colours of the values of a spectrum at so many nodes, evenly over all wavelengths.
+    using Parts = std::array<FilmColor, 3>;   // for R, G and B
+    /// Colours of the node values of a piecewise linear spectrum with `count` uniform nodes.
     std::vector<Parts> nodes(int count) const;
 
   private:
     int values_;
-    std::vector<Parts> per_nm_;   // at each nm; linear between
+    std::vector<Parts> per_nm_;   // at each nm, interpolated linearly
 };
 
 }  // namespace dg

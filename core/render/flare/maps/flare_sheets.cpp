@@ -12,10 +12,10 @@
 namespace dg {
 namespace {
 
-constexpr double kShare = 0.15;         // of all light, that a source must bring: maps take seconds
+constexpr double kShare = 0.15;         // least share of all light of a source with maps, which take seconds
 constexpr int kShadows = 256, kSequence = -7;
-constexpr double kMostError = 0.01;     // of all maps
-constexpr double kMostOfOne = 0.004, kLeastOfOne = 0.0004;   // of one; if all have more than they may, half, and half
+constexpr double kMostError = 0.01;     // limit for all maps
+constexpr double kMostOfOne = 0.004, kLeastOfOne = 0.0004;   // limit per map, halved while the total is too large
 
 bool serves(const Camera& camera, const RenderSettings& settings) {
     return camera.lens_motion.times.empty() && camera.setting.values.empty() &&
@@ -23,7 +23,7 @@ bool serves(const Camera& camera, const RenderSettings& settings) {
            settings.flare.learned && settings.flare.maps;
 }
 
-/// Those that bring enough light to be worth it.
+/// Small sources with enough light to justify maps.
 std::vector<SmallSource> choose_sources(const FlareAim& aim) {
     std::vector<SmallSource> chosen;
     double all = 0;
@@ -75,7 +75,7 @@ void FlareSheets::make_maps(const FlareAim& aim, const RenderSettings& settings)
     for (std::optional<Sheet>& s : all) sheets_.push_back(std::move(*s));
 }
 
-/// Pieces of all maps, and then of those again that are too wrong: rays alone bring their light.
+/// Divides all maps into pieces, and again for inaccurate maps, which are drawn by exact rays.
 void FlareSheets::divide(const RenderSettings& settings) {
     std::vector<std::optional<SheetPieces>> pieces(sheets_.size());
     const auto cut = [&](std::size_t i) {
@@ -99,7 +99,7 @@ void FlareSheets::divide(const RenderSettings& settings) {
     error_ = errors.all;
 }
 
-/// Those that may bring light, and how many of all arrivals each gets.
+/// Keeps pieces that may send light, and computes their shares of all arrivals.
 void FlareSheets::take(const std::vector<std::optional<SheetPieces>>& pieces, const FlareTiles& tiles) {
     double sum = 0, doubts = 0;
     for (std::size_t i = 0; i < pieces.size(); ++i) {

@@ -1,8 +1,7 @@
-// flare_sheets.h -- the ghosts of small sources as maps, with how densely each cell of each is drawn: found once for a
-// picture.
+// flare_sheets.h -- ghosts of small sources as maps, with sampling weights of their cells; built once per picture.
 //
-// The least noise for its time has as many arrivals on a piece of the frame as the ghost has of its light, relative to
-// how bright the flare is there: so a cell is drawn by its light, over the light where it lands.
+// Noise per time is lowest if the number of arrivals in a part of the frame is proportional to the ghost's light
+// relative to the brightness of the flare there. So a cell is sampled by its light over the light where it lands.
 #pragma once
 #include <memory>
 #include <optional>
@@ -18,22 +17,22 @@ namespace dg {
 class FlareSheets {
   public:
     struct Sheet {
-        int source, ghost;               // among sources(); of the aim
+        int source, ghost;               // indices in sources() and of the aim
         MapRays rays;
         GhostMap map;
         std::vector<SheetPiece> pieces{};
         SheetSmooth smooth{};
-        std::vector<bool> unseen{};      // by cell
+        std::vector<bool> unseen{};      // per cell: no sample came through
 
-        /// No cell is known to bring light from a place of the square.
+        /// Whether no cell is known to send light from a point of the square.
         bool is_dark(Vec2f at) const {
             const GhostMap::Cell* const cell = map.find(at);
             return !cell || unseen[std::size_t(cell - map.cells().data())];
         }
     };
 
-    /// None where the lens changes or is dirty, where the filter is wide, and where nothing small shines. The aim outlives
-    /// this.
+    /// Builds no maps if the lens changes during the exposure or is dirty, if the filter is wide, or if there are no
+    /// small sources. The aim must outlive this.
     FlareSheets(const FlareAim& aim, const RenderSettings& settings);
 
     bool empty() const { return sheets_.empty(); }
@@ -41,16 +40,16 @@ class FlareSheets {
     const std::vector<SmallSource>& sources() const { return sources_; }
     /// Whether a source of the aim has maps.
     bool has(int source) const;
-    /// Something is in the way of some of a source's light.
+    /// Whether a part of a source's light is occluded.
     bool hidden(int source) const { return hidden_[source]; }
-    /// Light of a pixel in the mean, about: of the sources' light times transmittances and unit areas of the square.
+    /// Approximate mean light per pixel, as the sources' light times transmittance and area in the square.
     double mean() const { return mean_; }
-    /// RMS error of the maps over tiles of the frame, relative to the light of a tile or a tenth of the mean; as far as
-    /// rays tell that were traced for this.
+    /// RMS error of the maps over tiles of the frame, relative to the light of a tile or a tenth of the mean, estimated
+    /// from exact rays.
     double error() const { return error_; }
-    /// Ghosts whose map was too wrong: all their light comes by rays.
+    /// Number of ghosts with inaccurate maps, which are drawn by exact rays.
     int by_rays() const { return by_rays_; }
-    /// It was too large, and there are no maps for it.
+    /// Whether the error was too large, so that no maps are used.
     bool failed() const { return failed_; }
 
   private:

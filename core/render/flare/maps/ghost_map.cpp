@@ -9,7 +9,7 @@
 
 namespace dg {
 
-/// Cubic through four equal steps of [0, 1] (Lagrange).
+/// Weights of the Lagrange cubic through four equidistant nodes on [0, 1].
 std::array<float, GhostMap::kSide> cubic_weights(float u) {
     const float t = 3 * u, a = t - 1, b = t - 2, c = t - 3;
     return {-a * b * c / 6, t * b * c / 2, -t * a * c / 2, t * a * b / 6};
@@ -41,7 +41,7 @@ const GhostMap::Cell* GhostMap::find(Vec2f at) const {
     return cell.holds(u) ? &cell : nullptr;
 }
 
-/// Interleaved bits of the finest cell (Morton 1966): the cells of a quadtree are runs of it.
+/// Interleaved bits of the finest cell (Morton 1966): each cell of a quadtree is a contiguous range.
 std::uint32_t GhostMap::code(Vec2f u) {
     constexpr float kFinest = kFirstAcross << (kLevels - 1);
     const auto spread = [](float x) {

@@ -1,4 +1,4 @@
-// ghost_map_fill.cpp -- the values of a cell of a ghost's map, and whether they are right off its nodes.
+// ghost_map_fill.cpp -- computes the values of a map cell and tests them between its nodes.
 #include <algorithm>
 #include <cmath>
 
@@ -9,25 +9,26 @@
 namespace dg {
 namespace {
 
-/// Tests in the middle of a cell: between the nodes of the wavelength, and off the axes of the source. There the map is
-/// linear; what that bends of the source's image may be so many times as much as elsewhere.
+/// Tests at the center of a cell, between the nodes of the wavelength and off the axes of the source, where the map is
+/// linear. The tolerance of the source's image is larger there by this factor.
 constexpr int kOffs = 3;
 constexpr struct {
     Vec2f shift;
     float nm, slack;
 } kOff[kOffs] = {{{0, 0}, 430, 1}, {{0, 0}, 670, 1}, {{0.6f, -0.6f}, 500, 2}};
-/// Points of the source about its middle, for what is not linear.
+/// Points of the source around its center, for second-order terms.
 constexpr int kStar = 7;
 constexpr float kAside = 0.7f;
 constexpr Vec2f kStarAt[kStar] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {kAside, kAside}, {kAside, -kAside}};
-/// Wavelengths at which light is tested away from the middle.
+/// Wavelengths at which light is tested off the cell's center.
 constexpr int kColors = 6;
 constexpr float kColorNm[kColors] = {430, 465, 510, 550, 590, 640};
 constexpr int kCornerNodes[4] = {0, 3, 12, 15};
 
 }  // namespace
 
-// Other wavelengths, the source's axes, tests off all axes, spectra in the middle and at corners, the star, colours.
+// Rays for: other wavelengths, the source's axes, tests off all axes, spectra at the center and at corners, the star,
+// colours.
 const int GhostMapMaker::kMore =
     GhostMap::kNodes * (GhostMap::kSets - 1) + kOffs + GhostMap::kFineSpectrum + 4 * GhostMap::kSpectrum + kStar +
     kTests * kColors;
@@ -53,7 +54,7 @@ void GhostMapMaker::complete(const Draft& d, Rays& rays) const {
         for (const float nm : kColorNm) rays.push_back({at(d, u), {0, 0}, nm});
 }
 
-/// False if it is not smooth over wavelengths and the source.
+/// Adds a cell; false if it is not smooth over wavelengths and the source.
 bool GhostMapMaker::add(const Draft& d, const MapLanding* seen, const MapLanding* more, const CellBlur& blur) {
     constexpr int kOffTests = 4 * GhostMap::kNodes;   // index
     if (!std::all_of(more, more + 2 * GhostMap::kNodes, [](const MapLanding& l) { return l.sound; })) return false;
@@ -71,7 +72,7 @@ bool GhostMapMaker::add(const Draft& d, const MapLanding* seen, const MapLanding
     return good;
 }
 
-/// Light at each test, over its wavelengths as they are seen, against what there is of it there and in the middle.
+/// Compares visible light at each test, over its wavelengths, relative to the exact light there and at the center.
 bool GhostMapMaker::colors_agree(const GhostMap::Cell& cell, const MapLanding* exact) {
     constexpr int kAll = kTests * kColors;
     for (int i = 0; i < kAll; ++i) batch_.set(i, kTestAt[i / kColors], {0, 0}, kColorNm[i % kColors], 1);
@@ -91,7 +92,8 @@ bool GhostMapMaker::colors_agree(const GhostMap::Cell& cell, const MapLanding* e
     return true;
 }
 
-/// Adds fields of the wavelengths, and what the axes of the source change: nothing where its rim is lost.
+/// Adds the fields of the wavelengths, and their differences along the axes of the source, which are 0 where rays from
+/// its rim are lost.
 void GhostMapMaker::add_nodes(const MapLanding* seen, const MapLanding* more) {
     std::vector<float>& values = map_.values_;
     const auto put = [&](const MapLanding& l, const MapLanding* from) {
@@ -111,7 +113,7 @@ void GhostMapMaker::add_nodes(const MapLanding* seen, const MapLanding* more) {
     }
 }
 
-/// Transmittances of the middle, relative to that of the middle wavelength, and what they are off at the corners.
+/// Adds transmittances at the center relative to the middle wavelength, and their differences at the corners.
 void GhostMapMaker::add_spectra(const MapLanding* seen, const MapLanding* fine, const MapLanding* corners) {
     const float place = spectrum_place(lambda_node(kMiddle)) * GhostMap::kFine;
     const int below = int(place);
@@ -124,7 +126,7 @@ void GhostMapMaker::add_spectra(const MapLanding* seen, const MapLanding* fine, 
                                    relative(k * GhostMap::kFine) * seen[kCornerNodes[c]].pass);
 }
 
-/// Second differences over the source; 0 where rays are lost.
+/// Adds second differences over the source, which are 0 where rays are lost.
 void GhostMapMaker::add_bends(const MapLanding* star) {
     const bool sound = std::all_of(star, star + kStar, [](const MapLanding& l) { return l.sound; });
     const auto add = [&](const auto& bend) {

@@ -1,4 +1,4 @@
-// ghost_map_judge.cpp -- what a first look at a cell of a ghost's map says: whether it may bring light, and is smooth.
+// ghost_map_judge.cpp -- decides from a few rays of a map cell whether it may send light, and whether it is smooth.
 #include <algorithm>
 #include <cmath>
 
@@ -9,12 +9,12 @@
 namespace dg {
 namespace {
 
-constexpr float kBeyond = 1;           // beyond what stops light: nobody asks how it lands
-constexpr float kHalfway = 0.7f;    // from a node to the one beside it: half, and some more
-constexpr float kAlone = 0.3f;      // beyond an edge, of a ray beside which all others end elsewhere
-constexpr float kClear = 0.02f;     // beyond an edge, in cells that are small
-constexpr int kSmall = 2, kSmallLost = 4;   // their levels; where rays are lost
-constexpr float kIrisOff = 2e-3f;   // of its radius
+constexpr float kBeyond = 1;           // clip value beyond which landings do not matter
+constexpr float kHalfway = 0.7f;    // fraction of the distance between nodes: half, with a margin
+constexpr float kAlone = 0.3f;      // clip value that suffices if no neighbour ends at the same surface
+constexpr float kClear = 0.02f;     // clip value that suffices in small cells
+constexpr int kSmall = 2, kSmallLost = 4;   // levels of small cells; where rays are lost
+constexpr float kIrisOff = 2e-3f;   // tolerance, fraction of the iris radius
 
 }  // namespace
 
@@ -26,7 +26,8 @@ GhostMapMaker::Verdict GhostMapMaker::judge(const MapLanding* seen, int level, C
     return smooth(seen, blur) ? Verdict::smooth : Verdict::rough;
 }
 
-/// Rays at its corners are all stopped, and by more than that changes from one to the next; or all beside the frame.
+/// Whether the rays at the corners are all blocked with clip values above their differences, or all land outside the
+/// frame.
 bool GhostMapMaker::dark_square(const MapLanding* const (&corner)[4]) const {
     Range stop, x, y;
     bool all_sound = true;
@@ -38,15 +39,15 @@ bool GhostMapMaker::dark_square(const MapLanding* const (&corner)[4]) const {
     return all_sound && beside(x, y, std::max(x.size(), y.size()));
 }
 
-/// Boxes of landings, grown by so many px, do not meet the frame.
+/// Whether the bounds of landings, extended by `more` px, are outside the frame.
 bool GhostMapMaker::beside(const Range& x, const Range& y, float more) const {
     more += reach_;
     return x.low - more > float(sensor_.width) || x.high + more < 0 || y.low - more > float(sensor_.height) ||
            y.high + more < 0;
 }
 
-/// Change of stopped() to the nodes beside one whose rays end at the same surface; from one surface to another it jumps,
-/// which says nothing. Below 0: there are none.
+/// Largest difference of stopped() to neighbouring nodes with rays that end at the same surface; between surfaces it is
+/// discontinuous. Below 0 if there are no such neighbours.
 float GhostMapMaker::change_around(const MapLanding* nodes, int n) const {
     constexpr int side = GhostMap::kSide;
     float change = -1;
@@ -58,7 +59,7 @@ float GhostMapMaker::change_around(const MapLanding* nodes, int n) const {
     return change;
 }
 
-/// Around each node, for all of the source.
+/// Whether light is blocked around each node, for all points of the source.
 bool GhostMapMaker::surely_stopped(const MapLanding* nodes, float margin) const {
     for (int n = 0; n < GhostMap::kNodes; ++n) {
         const float change = change_around(nodes, n);
@@ -106,7 +107,7 @@ MapLanding GhostMapMaker::by_cubics(const MapLanding* nodes, Vec2f u) const {
     return map;
 }
 
-/// The landing, the edge and the iris; errors of the latter two as they move the picture.
+/// Whether landing, edge and iris agree; errors of edge and iris are measured as shifts on the film.
 bool GhostMapMaker::agree(const MapLanding& map, const MapLanding& ray, const Scale& of) const {
     if (rays_.stopped(map) > kBeyond && rays_.stopped(ray) > kBeyond) return true;
     if (!ray.sound) return false;

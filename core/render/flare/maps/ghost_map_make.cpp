@@ -1,4 +1,4 @@
-// ghost_map_make.cpp -- where the cells of a ghost's map are, and how small.
+// ghost_map_make.cpp -- subdivides the front into the cells of a ghost's map.
 #include <algorithm>
 
 #include "render/flare/maps/ghost_map_maker.h"
@@ -7,10 +7,10 @@
 namespace dg {
 namespace {
 
-constexpr int kGrid = 25, kZooms = 4;   // rays across in search of the region; times that it is closed in on
-// Where rays are lost cells of this level are not divided: all of them then take exact rays, or none.
+constexpr int kGrid = 25, kZooms = 4;   // rays along an axis in the search for the region; zoom steps
+// Cells of this level are not divided where rays are lost: the whole cell uses exact rays, or none.
 constexpr int kLastLost = 5;
-constexpr int kSoundLevel = 4;   // of cells as large as the squares in which sound rays are looked for
+constexpr int kSoundLevel = 4;   // level of cells of the size of the squares that are searched for sound rays
 
 Vec2f node_at(int n) { return {float(n % GhostMap::kSide) / 3, float(n / GhostMap::kSide) / 3}; }
 
@@ -33,7 +33,7 @@ void GhostMapMaker::make() {
     sort();
 }
 
-/// Cells of one size, all rays of which are traced together.
+/// Processes cells of one size, with all their rays traced together.
 void GhostMapMaker::refine(const std::vector<Draft>& drafts, std::vector<Draft>& next) {
     Rays rays;
     for (const Draft& d : drafts) look(d, rays);
@@ -66,7 +66,7 @@ void GhostMapMaker::refine(const std::vector<Draft>& drafts, std::vector<Draft>&
             divide(drafts[good[k]], next);
 }
 
-/// Closes in on where light may come from; false: from nowhere.
+/// Narrows the region to where light may enter; false: no light enters.
 bool GhostMapMaker::zoom() {
     for (int round = 0; round < kZooms; ++round) {
         Rays rays;
@@ -91,7 +91,7 @@ bool GhostMapMaker::zoom() {
     return true;
 }
 
-/// Squares with a sound ray at a corner, and those beside them.
+/// Marks squares with a sound ray at a corner, and their neighbours.
 void GhostMapMaker::find_sound() {
     constexpr int across = GhostMap::kFirstAcross << kSoundLevel;
     Rays rays;
@@ -109,7 +109,7 @@ void GhostMapMaker::find_sound() {
     }
 }
 
-/// Adds a draft, unless all rays are lost in it and around it.
+/// Adds a draft unless all rays in and around it are lost.
 void GhostMapMaker::propose(const Draft& d, std::vector<Draft>& to) const {
     constexpr int across = GhostMap::kFirstAcross << kSoundLevel;
     const int x = int(d.low.x * across), y = int(d.low.y * across), size = std::max(int(d.size * across), 1);

@@ -1,5 +1,5 @@
-// ghost_map_maker.h -- makes the cells of a ghost's map, from coarse to fine: what is dark or beside the frame is left out,
-// what is not smooth enough is divided.
+// ghost_map_maker.h -- builds the cells of a ghost's map from coarse to fine: cells that are dark or land outside the
+// frame are dropped, cells that are not smooth are divided.
 #pragma once
 #include <limits>
 #include <vector>
@@ -22,7 +22,7 @@ class GhostMapMaker {
         float size;
         int level;
     };
-    /// Outcome of the first look at a draft; what is lost has no landing somewhere.
+    /// Classification of a draft; `lost`: a ray has no landing.
     enum class Verdict { dark, smooth, rough, lost };
     struct Range {
         float low = std::numeric_limits<float>::infinity(), high = -low;
@@ -30,17 +30,17 @@ class GhostMapMaker {
         float size() const { return high - low; }
         bool holds_zero() const { return low < 0 && high > 0; }
     };
-    /// Measures that errors are small against.
+    /// Scales for relative errors.
     struct Scale {
         Range beyond, x, y;   // over the cell
         CellBlur blur;
         float light, slack;
     };
 
-    static constexpr int kTests = 3;   // where a cubic is farthest from what it goes through
+    static constexpr int kTests = 3;   // near the maxima of a cubic's interpolation error
     static constexpr Vec2f kTestAt[kTests] = {{1 / 6.f, 1 / 6.f}, {5 / 6.f, 0.5f}, {0.5f, 5 / 6.f}};
-    static constexpr int kSeen = GhostMap::kNodes + kTests;   // rays of the source's middle in the first look
-    static constexpr int kLook = kSeen + 2;                   // all of it: and two from the source's rim
+    static constexpr int kSeen = GhostMap::kNodes + kTests;   // rays from the source's center in the first look
+    static constexpr int kLook = kSeen + 2;                   // with two rays from the source's rim
     static constexpr int kMiddle = 1;                         // index of the middle node of the wavelength
     static const int kMore;                                   // rays that complete a cell
 
@@ -83,7 +83,7 @@ class GhostMapMaker {
     float reach_;
     GhostMap::Accuracy accuracy_;
     MapBatch batch_{};
-    std::vector<bool> near_sound_;   // by square
+    std::vector<bool> near_sound_;   // per square
 };
 
 }  // namespace dg

@@ -1,4 +1,4 @@
-// ghost_map_simd.cpp -- landings of a cell of a ghost's map, in SIMD lanes.
+// ghost_map_simd.cpp -- landings in a map cell, in SIMD lanes.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/flare/maps/ghost_map_simd.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
@@ -10,7 +10,7 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-/// Cubics through four equal steps of [0, 1] (Lagrange).
+/// Weights of the Lagrange cubic through four equidistant nodes on [0, 1].
 HWY_INLINE void weigh_side(V u, V (&w)[GhostMap::kSide]) {
     const V t = hn::Mul(u, constant(3)), a = hn::Sub(t, constant(1)), b = hn::Sub(t, constant(2)),
             c = hn::Sub(t, constant(3));
@@ -21,7 +21,7 @@ HWY_INLINE void weigh_side(V u, V (&w)[GhostMap::kSide]) {
     w[3] = hn::Mul(hn::Mul(ab, t), constant(1 / 6.f));
 }
 
-/// Parabolas through the nodes of the wavelength, and the two axes of the source.
+/// Weights of parabolas through the nodes of the wavelength, and of the two axes of the source.
 HWY_INLINE void weigh_sets(const WavelengthScale& scale, V nm, V shift_x, V shift_y, V (&w)[GhostMap::kSets]) {
     const V inv_um = hn::Div(constant(1e3f), nm);
     const V l = hn::Mul(hn::MulAdd(hn::Mul(inv_um, inv_um), constant(scale.scale), constant(scale.offset)),
@@ -31,7 +31,7 @@ HWY_INLINE void weigh_sets(const WavelengthScale& scale, V nm, V shift_x, V shif
     w[3] = shift_x, w[4] = shift_y;
 }
 
-/// Linear between nodes.
+/// Interpolates linearly between nodes.
 HWY_INLINE V between(const float* nodes, int count, V place) {
     const V below = hn::Clamp(hn::Floor(place), hn::Zero(D()), constant(float(count - 2)));
     const VI index = hn::ConvertTo(DI(), below);
@@ -73,7 +73,7 @@ void Landings(const float* values, int crossings, const IrisTables& iris, MapBat
                 sum = hn::MulAdd(weight[n], constant(values[n * stride + value]), sum);
             return sum;
         };
-        const V x = sets[GhostMap::kLambdas], y = sets[GhostMap::kLambdas + 1];   // of the source; 1 has no bend of its own
+        const V x = sets[GhostMap::kLambdas], y = sets[GhostMap::kLambdas + 1];   // on the source
         const V bend[GhostMap::kBends] = {hn::MulSub(x, x, x), hn::MulSub(y, y, y), hn::Mul(x, y)};
         const float* const bends = values + GhostMap::kNodes * stride + GhostMap::kFineSpectrum + 4 * GhostMap::kSpectrum;
         const auto field = [&](int f) HWY_ATTR {
@@ -89,7 +89,7 @@ void Landings(const float* values, int crossings, const IrisTables& iris, MapBat
         const V middle = hn::Max(over_cell(stride - 1), hn::Zero(d));
         const V glass = hn::Max(transmittance(values + GhostMap::kNodes * stride, middle, u, v, nm), hn::Zero(d));
         const V wider = hn::Div(constant(1), hn::Load(d, batch.opening + i));
-        V left = constant(1);   // by the iris
+        V left = constant(1);   // transmittance of the iris
         for (int k = 0; k < crossings; ++k) {
             const V x = field(3 + 2 * k), y = field(4 + 2 * k);
             hn::Store(x, d, batch.iris_x[k] + i), hn::Store(y, d, batch.iris_y[k] + i);

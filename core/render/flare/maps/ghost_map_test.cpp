@@ -1,4 +1,4 @@
-// Maps of ghosts against the exact rays that they are made of, at places and wavelengths between their nodes.
+// Maps of ghosts against exact rays, at front points and wavelengths between their nodes.
 #include "render/flare/maps/ghost_map.h"
 
 #include <doctest/doctest.h>
@@ -14,9 +14,9 @@ using namespace dg;
 
 namespace {
 
-constexpr int kRays = 64;   // of a cell
+constexpr int kRays = 64;   // per cell
 
-/// Light of the maps and of the rays at the same places, and how far from each other both land.
+/// Light of maps and rays at the same front points, and the distance of their landings.
 struct Compared {
     double map = 0, rays = 0, wrong = 0, apart = 0, lit = 0, cells = 0;
 };
@@ -55,7 +55,7 @@ TEST_CASE("maps have the light of rays, and land it where rays do") {
         const FlareAim aim(*scene, camera, s);
         const auto source = small_source(aim, 0);
         REQUIRE(source);
-        CHECK(source->filled == doctest::Approx(1).epsilon(0.15));   // an even disc
+        CHECK(source->filled == doctest::Approx(1).epsilon(0.15));   // a uniform disc
         Compared all;
         for (int ghost = 0; ghost < aim.pairs(); ++ghost) {
             const MapRays rays(camera, aim.sensor(), aim.ghost_lens(), aim.steps(ghost), source->shape);

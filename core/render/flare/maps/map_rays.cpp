@@ -23,7 +23,7 @@ Vec2f MapSource::shift_of(Vec3d point) const {
     const double far = at_infinity ? 1 : length(middle);
     const Vec3d e = middle / far;
     const Across across(e);
-    const Vec3d p = point * (far / dot(point, e));   // on the plane through its middle
+    const Vec3d p = point * (far / dot(point, e));   // on the plane through the source's center
     return {float(dot(p, across.x) / radius), float(dot(p, across.y) / radius)};
 }
 
@@ -34,7 +34,7 @@ MapRays::MapRays(const Camera& camera, const Sensor& sensor, const GhostLens& gh
       per_iris2_(float(1 / std::pow(ghosts.iris_radius() * ghosts.iris().outer_radius(), 2))), front_(lens_.front_ball()),
       turn_x_(front_.radius * std::cos(source.turn)), turn_y_(front_.radius * std::sin(source.turn)) {}
 
-/// The square that stands across the way from the middle of the front to a point of the source.
+/// The square perpendicular to the direction from the center of the front to a source point.
 MapRays::Front MapRays::front(Vec2f shift) const {
     const Vec3d p = source_.point(shift), e = source_.at_infinity ? p : normalize(p - front_.center);
     const Across across(e);

@@ -1,5 +1,5 @@
-// map_rays.h -- exact rays from a small source by one ghost, by where they enter and which point of the source they come
-// from: what maps of ghosts are made of.
+// map_rays.h -- exact rays from a small source through a ghost, as functions of front point and source point. Maps of
+// ghosts interpolate them.
 #pragma once
 #include <optional>
 #include <span>
@@ -12,26 +12,26 @@
 
 namespace dg {
 
-/// A source that the lens sees within a small angle; camera frame, m.
+/// A source of small angular size; camera frame, m.
 struct MapSource {
-    Vec3d middle{0, 0, -1};   // a place, or the direction toward it
+    Vec3d middle{0, 0, -1};   // position, or direction toward a source at infinity
     bool at_infinity = true;
-    double radius = 0;        // m, or the tangent of half its angle
-    double turn = 0;          // rad, of the square's sides about the way to it
+    double radius = 0;        // m, or the tangent of half its angular diameter
+    double turn = 0;          // rad: rotation of the square's axes about the direction to the source
 
-    /// Place or direction of one of its points; within the unit disc.
+    /// Position or direction of the source point at `shift` in the unit disc.
     Vec3d point(Vec2f shift) const;
-    /// The shift of a point of the source, or of one beside it.
+    /// Inverse of point(), also outside the source.
     Vec2f shift_of(Vec3d point) const;
 };
 
-/// A ray: a place of the square that holds the front, [-1, 1)^2; a point of the source; nm.
+/// A ray: a point of the square [-1, 1)^2 that bounds the front; a point of the source; nm.
 struct MapRay {
     Vec2f at, shift;
     float nm;
 };
 
-/// Where it comes to the film; see OpenLandings.
+/// Landing of a ray on the film; see OpenLandings.
 struct MapLanding {
     Vec2f px;
     float beyond, pass;
@@ -42,7 +42,7 @@ struct MapLanding {
 
 class MapRays {
   public:
-    /// A camera with an exact lens that stands still; it and the steps outlive this.
+    /// The camera is static and has an exact lens; it and the ghost's steps must outlive this.
     MapRays(const Camera& camera, const Sensor& sensor, const GhostLens& ghosts,
             const std::vector<GhostStep>& steps, const MapSource& source);
 
@@ -50,19 +50,19 @@ class MapRays {
     const GhostLens& ghosts() const { return ghosts_; }
     const MapSource& source() const { return source_; }
     std::vector<MapLanding> trace(std::span<const MapRay> rays) const;
-    /// Share of light that gets through the edges and an iris that is open so far, a share of its radius.
+    /// Transmittance of edges and iris. `iris_opening`: fraction of the iris radius.
     float passed(const MapLanding& landing, float iris_opening) const;
-    /// Above 0 where an edge or the iris stops light; smooth, but for where one takes over from the other.
+    /// Clip value: positive where an edge or the iris blocks light; the maximum of smooth functions.
     float stopped(const MapLanding& landing) const;
-    /// The ray as it runs from the front lens to a point of the source, in the world; nothing if it misses the lens.
+    /// Ray from the front lens to a point of the source, in the world; empty if it misses the lens.
     std::optional<Ray> shadow(const MapRay& ray, const EmitterPoint& from, float time) const;
 
   private:
     struct Line {
-        Vec3d place, direction;   // camera frame, m; toward the source
+        Vec3d place, direction;   // camera frame, m; direction toward the source
     };
     struct Front {
-        Vec3d point, toward, x, y;   // of the source; unit; sides of half the square
+        Vec3d point, toward, x, y;   // source point; unit direction; half sides of the square
     };
     Front front(Vec2f shift) const;
     Line line(const Front& front, Vec2f at) const;
@@ -76,7 +76,7 @@ class MapRays {
     int crossings_;
     float per_iris2_;   // 1 / mm2
     ExactLens::Ball front_;
-    double turn_x_, turn_y_;   // m: the radius of the front, along and across the turn
+    double turn_x_, turn_y_;   // m: components of the front's radius along the rotated axes
 };
 
 }  // namespace dg

@@ -14,8 +14,7 @@ namespace {
 
 constexpr double kRays = 1 << 17, kDarkRays = 1 << 15;
 
-/// Light around places some pixels apart: each has its share of what lands between, so that light which lands a little
-/// off is a small difference.
+/// Light on a coarse grid with bilinear weights, so that small shifts of landings cause small differences.
 class Grid {
   public:
     explicit Grid(const Sensor& sensor)
@@ -47,8 +46,8 @@ class Grid {
     std::vector<double> light_;
 };
 
-/// Light of rays less that of maps, in two halves that know nothing of each other: the mean of their product is the
-/// square of the error, without that of chance.
+/// Light of rays minus light of maps, in two independent halves: the mean of their product is the squared error without
+/// the variance of the estimate.
 using Difference = std::array<Grid, 2>;
 
 class Tester {
@@ -80,7 +79,7 @@ class Tester {
     CellNumbers u_;
 };
 
-/// By its light.
+/// Tests a piece with rays in proportion to its light.
 void Tester::test(const SheetPiece& piece, std::size_t index) {
     const GhostMap::Cell& cell = sheet_.map.cells()[piece.cell];
     if (cell.exact) return;
@@ -100,7 +99,7 @@ void Tester::test(const SheetPiece& piece, std::size_t index) {
     });
 }
 
-/// Where the map says that there is no light.
+/// Tests points where the map has no light.
 void Tester::test_dark() {
     u_.each(hash64(key_, ~0ull), 0, std::uint64_t(dark_), [&](std::uint64_t, int count) {
         std::vector<MapRay> rays;
@@ -119,13 +118,13 @@ void Tester::test_dark() {
     });
 }
 
-/// RMS over places, relative to the light of each: halves that differ in sign are no error.
+/// RMS over grid points relative to the light of each; halves with different signs cancel.
 double error_of(const Difference& d, const FlareTiles& tiles) {
-    const double mean = tiles.mean() / tiles.area() * d[0].area();   // of a place
+    const double mean = tiles.mean() / tiles.area() * d[0].area();   // per grid point
     double sum = 0;
     for (std::size_t i = 0; i < d[0].count(); ++i) {
         const double per_light = tiles.importance(d[0].place(i)) / mean;
-        sum += 4 * d[0].light(i) * d[1].light(i) * per_light * per_light;   // each has half of the rays
+        sum += 4 * d[0].light(i) * d[1].light(i) * per_light * per_light;   // each half has half of the rays
     }
     return std::sqrt(std::max(0.0, sum / double(d[0].count())));
 }

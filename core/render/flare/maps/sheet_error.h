@@ -1,4 +1,4 @@
-// sheet_error.h -- how far the maps of ghosts are off, by exact rays.
+// sheet_error.h -- errors of ghost maps, measured with exact rays.
 #pragma once
 #include "render/flare/flare_tiles.h"
 #include "render/flare/maps/flare_sheets.h"
@@ -7,9 +7,9 @@ namespace dg {
 
 struct SheetErrors {
     double all;                     // FlareSheets::error()
-    std::vector<double> of_sheet;   // the same of each by itself
+    std::vector<double> of_sheet;   // error of each map
 };
-/// `tiles`: the light of the maps.
+/// `tiles`: light of the maps.
 SheetErrors sheet_errors(const FlareSheets& sheets, const FlareTiles& tiles, const RenderSettings& settings);
 
 }  // namespace dg

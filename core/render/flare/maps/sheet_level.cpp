@@ -8,12 +8,12 @@
 namespace dg {
 namespace {
 
-constexpr double kSharpest = 0.1;              // share of the light
-constexpr float kPitches = 5, kEvenPitches = 8;   // across the blur; in what is even
-constexpr float kBend = 0.02f, kSlope = 0.3f;     // of the variance over the distance from an edge
+constexpr double kSharpest = 0.1;              // share of the light that is ignored
+constexpr float kPitches = 5, kEvenPitches = 8;   // node spacings per blur, and per e-fold change of light
+constexpr float kBend = 0.02f, kSlope = 0.3f;     // second and first derivative of the variance over the distance
 constexpr float kVariance = CoarseLight::variance(0), kCoarsest = CoarseLight::variance(SheetLevel::kMost);
 
-/// px2, at a distance from an edge.
+/// Variance (px2) at a distance from an edge.
 float variance_at(float px) {
     if (!(px > 0)) return 0;
     constexpr float kStraight = kSlope / kBend;
@@ -51,7 +51,7 @@ float SheetLevel::of_rays() const {
     return std::max(level_of(kVariance * pitch * pitch), 1.f);
 }
 
-/// px; below 0 behind it.
+/// Distance from the nearest edge, px; negative in the shadow.
 float SheetLevel::from_edge(const CellBlur& blur, const MapBatch& b, int i) const {
     float far = blur.beyond_per_px > 0 ? -b.beyond[i] / blur.beyond_per_px : 1e9f;
     for (int k = 0; k < crossings_; ++k) {
@@ -61,8 +61,8 @@ float SheetLevel::from_edge(const CellBlur& blur, const MapBatch& b, int i) cons
     return far;
 }
 
-/// By the blur; or by how far it is to an edge and how even the light is, as where edges are far away a ghost is smooth
-/// however sharp it is. One goes over into the other without a bend.
+/// Combines the blur with the distance from an edge and the gradient of the light: far from edges even a sharp ghost is
+/// smooth. The transition is smooth.
 float SheetLevel::of(const CellBlur& blur, const MapBatch& batch, int i) const {
     const auto squared = [](float x) { return x * x; };
     const float edge = std::min(blur.edge, smooth_.edge), even = std::min(blur.even_px, smooth_.even);

@@ -1,8 +1,8 @@
-// sheet_level.h -- how coarse the light of a ghost may be where it lands.
+// sheet_level.h -- chooses the node spacing for the light of a ghost.
 //
-// Light that lands on nodes p px apart is spread over them by a kernel of the variance v = 5/12 p^2 (a tent, and then a
-// parabola). What this does to even light is v'' / 2 where v differs from place to place: so it is v that grows slowly
-// with the distance from an edge, and not the pitch.
+// Light on nodes p px apart is blurred by a kernel of variance v = 5/12 p^2 (a tent, then a quadratic B-spline). If v
+// varies over the frame, uniform light changes by v'' / 2. So v, rather than p, must vary slowly with the distance from
+// an edge.
 #pragma once
 #include <vector>
 
@@ -11,7 +11,7 @@
 
 namespace dg {
 
-/// How smooth a ghost is: all but the sharpest part of its light.
+/// Smoothness of a ghost, without the sharpest part of its light.
 struct SheetSmooth {
     float edge = 0, even = 0;   // px; see CellBlur
     struct CellLight {
@@ -23,16 +23,16 @@ struct SheetSmooth {
 
 class SheetLevel {
   public:
-    static constexpr int kMost = 4;   // 16 px from node to node
+    static constexpr int kMost = 4;   // a spacing of 16 px
 
-    /// `crossings`: of the iris; `filled`: of the source's circle.
+    /// `crossings`: of the iris. `filled`: lit fraction of the source's circle.
     SheetLevel(int crossings, const GhostLens& lens, const Sensor& sensor, float filled, const SheetSmooth& smooth);
-    /// Level of one of a batch of landings in a cell with that blur: 2^l px is the pitch, and the part after the point the
-    /// chance of the next coarser one, with which v is right in the mean.
+    /// Fractional level of landing i in a cell with that blur. The spacing is 2^level px; the fractional part is the
+    /// probability of the next coarser level, which makes v correct on average.
     float of(const CellBlur& blur, const MapBatch& batch, int i) const;
-    /// Level of light of which there is no map: half the pitch of most of the rest.
+    /// Level of light without a map: half the spacing of most other light.
     float of_rays() const;
-    /// Pitch for the blur of a cell's edges, px.
+    /// Node spacing for the blur of a cell's edges, px.
     float pitch(const CellBlur& blur) const;
 
   private:
@@ -41,7 +41,7 @@ class SheetLevel {
     int crossings_;
     SheetSmooth smooth_;
     float filled_, apothem_;   // mm
-    float most_;               // px2, of a kernel
+    float most_;               // px2: largest variance of a kernel
 };
 
 }  // namespace dg

@@ -7,15 +7,15 @@
 namespace dg {
 namespace {
 
-// Arrivals for each flare path: from maps; exact rays of what maps have wrong; and of where they have nothing.
+// Arrivals per flare path: from maps; exact rays that correct maps; exact rays where maps have no light.
 constexpr double kArrivals = 4, kDifferences = 0.125, kDark = 0.005;
 constexpr double kTask = 1 << 16;   // arrivals
-constexpr float kNear = 48;         // px beside the frame from which light may come to it
-constexpr float kVariance = 0.56f;  // of light that is moved by a pitch, over that of the light: of a B-spline of degree 4
-constexpr int kDifferenceLevel = SheetLevel::kMost;   // it is little, and has no fine detail of its own
+constexpr float kNear = 48;         // px: margin around the frame
+constexpr float kVariance = 0.56f;  // relative variance of light moved by a node spacing (degree 4 B-spline)
+constexpr int kDifferenceLevel = SheetLevel::kMost;   // differences are small and without fine detail
 constexpr float kMm2 = 1e6f;        // in 1 m2
 
-/// The level that light is added at: drawn, so that levels go over into each other.
+/// Chooses an integer level at random, for a smooth transition between levels.
 int drawn_level(float level, float u) { return std::min(int(level + u), SheetLevel::kMost); }
 
 std::unique_ptr<CoarseLight> coarse(const Picture& p, int values, int level, double mean) {
@@ -37,7 +37,7 @@ SheetPass::SheetPass(const Picture& picture, std::array<double, 2> indices, doub
         coarse_[level] = coarse(picture, colors_.table.values(), level, mean);
 }
 
-/// Pieces side by side, of about as many arrivals for each task. What is dark goes with the first of them.
+/// Groups consecutive pieces into tasks with similar numbers of arrivals. Dark areas belong to the first task.
 void SheetPass::plan() {
     const auto& sheets = guide_->sheets().sheets();
     for (std::size_t s = 0; s < sheets.size(); ++s) {
@@ -57,7 +57,7 @@ double SheetPass::rate(Kind kind, const SheetPiece& piece) const {
     return (kind == Kind::difference ? piece.doubt * kDifferences : piece.share * kArrivals) * per_sample_;
 }
 
-/// Those of a piece that belong to the samples: parts of the samples have parts of them.
+/// Indices of a piece's arrivals that belong to the range of samples.
 SheetPass::Range SheetPass::range(Kind kind, std::size_t sheet, std::uint32_t piece, double rate) const {
     const std::uint64_t seed =
         hash64(picture_.settings.seed, std::uint64_t(kind) << 56 | std::uint64_t(sheet) << 32 | piece);
@@ -99,7 +99,7 @@ const CellColor& SheetPass::color_of(Work& work, const Sheet& s, const SheetPiec
     return *work.color;
 }
 
-/// Arrivals of which nothing but the map is asked; and, where something is in the way of some, whether it is of each.
+/// Draws arrivals from the map, with a shadow ray for each if the source is partly occluded.
 void SheetPass::draw_map(Work& work, const Sheet& s, const SheetPiece& piece, const Range& r, float weight) {
     const GhostMap::Cell& cell = s.map.cells()[piece.cell];
     const SmallSource& small = source(s);
@@ -142,7 +142,8 @@ void SheetPass::draw_map(Work& work, const Sheet& s, const SheetPiece& piece, co
     });
 }
 
-/// The same places by the map, each wavelength by itself unless the cell is gray, and by an exact ray.
+/// Draws differences at common front points: the exact ray minus the map, for a single wavelength unless the cell is
+/// gray.
 void SheetPass::draw_difference(Work& work, const Sheet& s, const SheetPiece& piece, const Range& r, float weight) {
     const GhostMap::Cell& cell = s.map.cells()[piece.cell];
     const SmallSource& small = source(s);
@@ -172,7 +173,7 @@ void SheetPass::draw_difference(Work& work, const Sheet& s, const SheetPiece& pi
     });
 }
 
-/// A ray by one of the numbers of the work.
+/// Adds an exact ray with the random numbers i of `work`.
 SheetPass::Exact& SheetPass::add_exact(Work& work, const Sheet& s, Vec2f at, int i, float weight) const {
     const auto& u = work.numbers.of;
     const SmallSource::Point& p = source(s).point(u[CellNumbers::kPoint][i]);
@@ -194,8 +195,8 @@ void SheetPass::draw_exact(Work& work, const Sheet& s, const SheetPiece& piece, 
     });
 }
 
-/// Rays through places from which, for all that the map knows, no light comes. What they find is added far and wide: it is
-/// little, and each ray of it bright.
+/// Draws exact rays at front points without light in the map. Their light is splatted at the coarsest level, since they
+/// are few and each is bright.
 void SheetPass::draw_dark(Work& work, std::size_t sheet) {
     const Sheet& s = guide_->sheets().sheets()[sheet];
     const double rate = kDark * per_sample_ / double(guide_->sheets().sheets().size());
@@ -211,7 +212,7 @@ void SheetPass::draw_dark(Work& work, std::size_t sheet) {
     trace(work, s);
 }
 
-/// Exact rays that were gathered.
+/// Traces the gathered exact rays.
 void SheetPass::trace(Work& work, const Sheet& s) {
     std::vector<MapRay> rays;
     for (const Exact& e : work.exact) rays.push_back(e.ray);
@@ -238,7 +239,7 @@ void SheetPass::flush(Work& work) {
     }
 }
 
-/// Visibility of the point along the ray, at its wavelength.
+/// Visibility of the source point along the ray, at its wavelength.
 float SheetPass::seen(Work& work, const Sheet& s, const MapRay& ray, const SmallSource::Point& from,
                       float u_lambda) const {
     const auto shadow = s.rays.shadow(ray, from.from, from.moment.time);
@@ -247,7 +248,8 @@ float SheetPass::seen(Work& work, const Sheet& s, const MapRay& ray, const Small
     return picture_.scene.visibility_along(*shadow, Wavelengths::sample(u_lambda))[0];
 }
 
-/// Share of light that the shutter lets pass: over the whole exposure, but of what moves under a shutter that rolls.
+/// Shutter transmission: the mean over the exposure, or the value at the point's time for a moving source with a
+/// rolling shutter.
 float SheetPass::exposed(const SmallSource& small, const SmallSource::Point& from, Vec2f px) const {
     const Shutter& shutter = picture_.settings.shutter;
     if (!shutter.rolls() || !small.moves) return shutter.weight();
@@ -255,7 +257,7 @@ float SheetPass::exposed(const SmallSource& small, const SmallSource::Point& fro
     return shutter.opening(shutter.row_at(px, sensor.width, sensor.height), from.moment.time) / float(shutter.any_share());
 }
 
-/// Light at a place, and what is to be taken off at another.
+/// Adds light at a position, and subtracts the map's light at its position.
 void SheetPass::arrive(Work& work, int level, Vec2f px, const FilmColor& light, const Taken* map) {
     const Sensor& sensor = picture_.settings.sensor;
     const auto counts = [&](Vec2f at, const FilmColor& c) {

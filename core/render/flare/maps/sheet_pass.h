@@ -1,10 +1,9 @@
-// sheet_pass.h -- ghosts of small sources, drawn from their maps: very many arrivals that cost a few interpolations each,
-// and few exact rays of what the maps have wrong. E[map] + E[exact - map] = E[exact]: what comes to the film is right in
-// the mean, however rough a map is, and quiet where it is good (two levels of a multilevel estimator; Heinrich 2001,
-// Giles 2015, arXiv 1304.5472).
+// sheet_pass.h -- ghosts of small sources from maps: a large number of cheap interpolated arrivals, and a small number
+// of exact rays that correct the maps. E[map] + E[exact - map] = E[exact], so the result is unbiased for any map, with
+// low noise for accurate maps (a two-level multilevel estimator; Heinrich 2001, Giles 2015, arXiv 1304.5472).
 //
-// Light of a ghost that is blurred over many pixels by the size of its source comes to nodes a fifth of that blur apart
-// (coarse_light.h); that of a sharp one to nodes at the pixels.
+// Light of a ghost that the source's size blurs over many pixels is splatted to nodes a fifth of the blur apart
+// (coarse_light.h); light of a sharp ghost, to nodes at the pixels.
 #pragma once
 #include <array>
 #include <memory>
@@ -22,8 +21,8 @@ namespace dg {
 
 class SheetPass final : public Pass {
   public:
-    /// Draws sample indices [begin, end). `per_sample`: flare paths per index, each of which stands for
-    /// some arrivals; `per_count`: indices per unit of the density's counts.
+    /// Draws the sample indices [begin, end) of `indices`. `per_sample`: flare paths per index, each equivalent to
+    /// kArrivals arrivals. `per_count`: indices per unit of the density's counts.
     SheetPass(const Picture& picture, std::array<double, 2> indices, double per_sample, double per_count,
               std::shared_ptr<const FlareGuide> guide);
 
@@ -34,36 +33,36 @@ class SheetPass final : public Pass {
 
   private:
     using Sheet = FlareSheets::Sheet;
-    /// Ways to draw a cell: from the map, exact rays less the map, or exact rays alone, there and where no cell is.
+    /// Estimators of a cell: the map, exact rays minus the map, exact rays alone, and exact rays where no cell is.
     enum class Kind { map, difference, exact, dark };
     /// Pieces [first, last) of a sheet.
     struct Task {
         std::size_t sheet;
         std::uint32_t first, last;
     };
-    /// Light that the map has instead of an exact ray: to be taken off.
+    /// Light of the map to subtract from an exact ray.
     struct Taken {
         Vec2f px;
         FilmColor light;
     };
-    /// An exact ray to be traced, with what it is to bring.
+    /// An exact ray to trace, with its light.
     struct Exact {
         MapRay ray;
         const SmallSource::Point* from;
         float u_lambda;
-        FilmColor light;         // if all of it passes
+        FilmColor light;         // without occlusion and clipping
         int level;
         Taken map{};
     };
     struct Work {
         MapBatch batch{};
         CellNumbers numbers;
-        std::optional<CellColor> color;    // of the piece before: pieces of a cell lie side by side
+        std::optional<CellColor> color;    // cached from the previous piece, as pieces of a cell are consecutive
         std::pair<const GhostMap::Cell*, bool> color_of{};
         std::vector<const SmallSource::Point*> from;
         std::vector<Exact> exact;
-        std::array<std::vector<CoarseLight::Arrival>, SheetLevel::kMost + 1> arrivals;   // by level
-        std::size_t arrived = 0;   // of them
+        std::array<std::vector<CoarseLight::Arrival>, SheetLevel::kMost + 1> arrivals;   // per level
+        std::size_t arrived = 0;   // number of arrivals
         RenderCounters counters;
     };
     struct Range {
@@ -74,7 +73,7 @@ class SheetPass final : public Pass {
     Range range(Kind kind, std::size_t sheet, std::uint32_t piece, double rate) const;
     /// Arrivals per sample index.
     double rate(Kind kind, const SheetPiece& piece) const;
-    /// Light of one arrival, of a source of 1 whose light all passes.
+    /// Light of an arrival, for an unoccluded source of light 1.
     float weight(double area, double rate) const;
     void draw_piece(Work& work, std::size_t sheet, std::uint32_t piece);
     void draw_map(Work& work, const Sheet& sheet, const SheetPiece& piece, const Range& range, float weight);
@@ -99,9 +98,9 @@ class SheetPass final : public Pass {
     std::shared_ptr<const FlareGuide> guide_;
     FilmDensity density_;
     CellColors colors_;
-    float unit_;                     // of a pixel, from light and unit areas of the square
+    float unit_;                     // light of a pixel per light and unit area of the square
     std::vector<Task> tasks_;
-    std::array<std::unique_ptr<CoarseLight>, SheetLevel::kMost + 1> coarse_;   // by level
+    std::array<std::unique_ptr<CoarseLight>, SheetLevel::kMost + 1> coarse_;   // per level
     oneapi::tbb::enumerable_thread_specific<std::unique_ptr<Work>> works_;
 };
 

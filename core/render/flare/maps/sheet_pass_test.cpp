@@ -1,4 +1,4 @@
-// Ghosts of small sources drawn from maps are those that exact paths find, map alone and with what rays take off it.
+// Ghosts of small sources from maps against exact paths: the map alone, and the map with corrections.
 #include "render/flare/maps/sheet_pass.h"
 
 #include <doctest/doctest.h>
@@ -29,7 +29,7 @@ constexpr double kOpen_s = 0.02;
 
 SphereLight sun_toward(float x) { return {{normalize(Vec3f{x, 0.08f, -1}) * 1000.f, 4.6f}, {3e5f, 3e5f, 3e5f}}; }
 
-/// A sun that goes as far while the shutter is open as four of its diameters.
+/// A sun that moves by four of its diameters while the shutter is open.
 std::shared_ptr<const Scene> moving_sun() {
     SceneDescription d;
     d.lights = {sun_toward(0.1f)};
@@ -38,7 +38,7 @@ std::shared_ptr<const Scene> moving_sun() {
     return Scene::build(std::move(d));
 }
 
-/// The sun as a disc of so many triangles, which faces the lens.
+/// The sun as a disc of `count` triangles that faces the lens.
 std::shared_ptr<const Scene> sun_of_triangles(std::uint32_t count) {
     SceneDescription d;
     GltfMaterial shines;
@@ -61,7 +61,7 @@ std::shared_ptr<const Scene> sun_of_triangles(std::uint32_t count) {
     return Scene::build(std::move(d));
 }
 
-/// Something black before half of the front.
+/// A black occluder in front of half of the front lens.
 std::shared_ptr<const Scene> half_hidden_sun() {
     SceneDescription d;
     d.lights = {sun_toward(0.12f)};
@@ -71,7 +71,7 @@ std::shared_ptr<const Scene> half_hidden_sun() {
     return Scene::build(std::move(d));
 }
 
-/// Maps and paths bring the same light, of X, Y and Z in every block.
+/// Checks that maps and paths give the same X, Y and Z in every block.
 void check_maps(const Scene& scene, const Shutter& shutter, double share_of_sunny_from, double to) {
     const Camera camera = camera_with(test::tessar());
     const Blocks maps = pictures(scene, camera, 6, 40000, true, shutter);
@@ -100,7 +100,7 @@ TEST_CASE("a disc of triangles has the ghosts of a ball of its size, from maps")
     const Camera camera = camera_with(test::tessar());
     const Blocks ball = pictures(*sunny(), camera, 6, 40000, true);
     for (const std::uint32_t triangles : {24u, 400u}) {
-        const double share = 0.5 * triangles * std::sin(2 * kPiD / triangles) / kPiD;   // of the round disc
+        const double share = 0.5 * triangles * std::sin(2 * kPiD / triangles) / kPiD;   // fraction of the circular disc's area
         Blocks disc = pictures(*sun_of_triangles(triangles), camera, 6, 40000, true);
         for (std::vector<double>& picture : disc)
             for (double& block : picture) block /= share;

@@ -11,21 +11,21 @@ namespace dg {
 namespace {
 
 constexpr int kLooks = 32, kExactLooks = 16;
-constexpr int kDeepest = 4;             // divisions of a cell
-constexpr float kNoSmaller = 0.75f;     // where a part of a piece lands, of where the piece lands
-constexpr float kFarOff = 0.1f;         // of looks that land beside the frame, as the others of their piece may not
-constexpr float kExactShare = 0.8f;     // an exact ray takes longer than an arrival
-constexpr float kSmallest = 12;         // px, of a piece with an edge, in pitches of the edge
-constexpr double kUnseen = 0.05, kSurelyUnseen = 0.005;   // looks that a piece has beside those that saw light
-constexpr double kPixel = 0.2, kBlock = 0.05;   // how much the noise of pixels and that of their blocks count
-constexpr int kTests = 16;              // rays of a cell, that tell how wrong its map is
-constexpr double kLeastWrong = 0.02;    // as a share of the light: at least
-constexpr double kMoved = 0.75;         // error of light that lands a pitch off, as a share of it
-constexpr float kSeen[2] = {430, 650};  // nm: between them most light is seen
-constexpr float kGray = 0.25f;          // pitches that colours of one place are apart at most
-constexpr float kSure = 0.5f;           // how far beyond an edge, over what that changes in the piece
+constexpr int kDeepest = 4;             // limit of subdivisions of a cell
+constexpr float kNoSmaller = 0.75f;     // extent of a part's landings over the whole, above which division is useless
+constexpr float kFarOff = 0.1f;         // weight of samples that land outside the frame, as neighbours may land inside
+constexpr float kExactShare = 0.8f;     // factor for exact rays, which take longer than arrivals
+constexpr float kSmallest = 12;         // least extent of a piece with an edge, in node spacings of the edge
+constexpr double kUnseen = 0.05, kSurelyUnseen = 0.005;   // pseudo-counts of samples with light
+constexpr double kPixel = 0.2, kBlock = 0.05;   // weights of the noise of pixels and of blocks
+constexpr int kTests = 16;              // rays per cell that measure the error of its map
+constexpr double kLeastWrong = 0.02;    // least error, as a fraction of the light
+constexpr double kMoved = 0.75;         // error of light that lands a node spacing off, as a fraction
+constexpr float kSeen[2] = {430, 650};  // nm: bounds of most visible light
+constexpr float kGray = 0.25f;          // largest distance between wavelengths of a gray piece, in node spacings
+constexpr float kSure = 0.5f;           // clip value over its range in the piece, above which light is blocked
 
-/// From the frame, px: where light may land that comes to it.
+/// Margin around the frame from which light may reach it, px.
 const float kReach = CoarseLight::reach(SheetLevel::kMost);
 
 }  // namespace
@@ -59,7 +59,7 @@ SheetPieces::SheetPieces(const MapRays& rays, const GhostMap& map, const SmallSo
     for (std::uint32_t c = 0; c < map.cells().size(); ++c) divide({c, {0, 0}, 1, 0}, 0, nullptr);
 }
 
-/// By the light of cells that may come to the frame.
+/// Smoothness by the light of cells that may reach the frame.
 SheetSmooth SheetPieces::smoothness() const {
     std::vector<SheetSmooth::CellLight> cells;
     MapBatch& batch = thread_scratch<MapBatch>([] {});
@@ -82,14 +82,14 @@ bool SheetPieces::near(Vec2f px, float reach) const {
            px.y < float(sensor_.height) + reach;
 }
 
-/// So many places of a piece, with what else a landing depends on.
+/// Draws `count` points of a piece with source points, wavelengths and iris openings.
 void SheetPieces::draw(MapBatch& batch, const SheetPiece& piece, int count) const {
     CellNumbers& u = thread_scratch<CellNumbers>([] {});
     u.fill(hash64(key_, piece.cell), 0, std::uint64_t(count));
     draw_places(batch, piece, source_, u, count);
 }
 
-/// The rays of a batch, traced.
+/// Traces the exact rays of a batch.
 std::vector<MapLanding> SheetPieces::trace(const MapBatch& batch, const GhostMap::Cell& cell, int count) const {
     return rays_.trace(rays_of(map_, cell, batch, count));
 }
@@ -99,7 +99,7 @@ void SheetPieces::divide(const SheetPiece& piece, int depth, const Looked* whole
     const int count = cell.exact ? kExactLooks : kLooks;
     const Looked looked = look(piece, count);
     const bool even = looked.lit == 0 || looked.lit == count;
-    const bool spread = whole && extent(looked) > kNoSmaller * extent(*whole);   // by source and colours, not by place
+    const bool spread = whole && extent(looked) > kNoSmaller * extent(*whole);   // division does not help
     if (even || spread || depth == kDeepest || is_small(piece, looked)) return keep(piece, count, looked, whole);
     for (int k = 0; k < 4; ++k) {
         const float half = 0.5f * piece.size;
@@ -107,7 +107,7 @@ void SheetPieces::divide(const SheetPiece& piece, int depth, const Looked* whole
     }
 }
 
-/// Longer side of the box where light lands, px.
+/// Longer side of the landings' bounds, px.
 float SheetPieces::extent(const Looked& l) { return std::max(l.high.x - l.low.x, l.high.y - l.low.y); }
 
 bool SheetPieces::is_small(const SheetPiece& piece, const Looked& looked) const {
@@ -155,7 +155,7 @@ void SheetPieces::see(Looked& to, Vec2f px, float glass, float pass, float stop)
     to.seen.push_back({px, here ? pass : 0, here ? glass : kFarOff * glass});
 }
 
-/// A look at the middle of where light lands that comes through what is around it.
+/// A stand-in sample at the center of the landings of the enclosing piece.
 SheetPieces::Looked SheetPieces::in_the_dark(const Looked& whole) {
     Looked looked = whole;
     float most = 0;
@@ -164,15 +164,15 @@ SheetPieces::Looked SheetPieces::in_the_dark(const Looked& whole) {
     return looked;
 }
 
-/// Far from the frame, for all that looks tell, which are not at the piece's rim.
+/// Whether the samples, with a margin for the piece's rim, land outside the frame.
 bool SheetPieces::beside(const Looked& l) const {
     const Vec2f more = 0.5f * (l.high - l.low);
     return l.seen.empty() || l.high.x + more.x < -kReach || l.high.y + more.y < -kReach ||
            l.low.x - more.x > float(sensor_.width) + kReach || l.low.y - more.y > float(sensor_.height) + kReach;
 }
 
-/// `whole`: what was seen of what it is a part of. Where no light comes through the glass in all of a cell, the cell is
-/// no better known than what has none.
+/// Stores a piece. `whole`: samples of the enclosing piece. Cells without any light through the lens are treated like
+/// areas without cells.
 void SheetPieces::keep(SheetPiece piece, int count, Looked looked, const Looked* whole) {
     const bool sure = looked.lit == 0 && looked.least_stop > kSure * (looked.most_stop - looked.least_stop);
     if (looked.seen.empty() && !whole) unseen_[piece.cell] = true;
@@ -191,7 +191,7 @@ void SheetPieces::keep(SheetPiece piece, int count, Looked looked, const Looked*
     end_.push_back(seen_.size());
 }
 
-/// Root of the mean square of what exact rays have else than the map: light, or its place against the pitch there.
+/// RMS difference between exact rays and the map: in light, or in position relative to the node spacing.
 float SheetPieces::wrong(std::uint32_t c) const {
     const GhostMap::Cell& cell = map_.cells()[c];
     MapBatch& batch = thread_scratch<MapBatch>([] {});
@@ -209,7 +209,7 @@ float SheetPieces::wrong(std::uint32_t c) const {
     return float(std::max(kLeastWrong, std::sqrt((squares + kUnseen * light / kTests * 0.01) / std::max(light, 1e-30))));
 }
 
-/// How far apart the ends of what is seen land, from the middle of a cell and from near its corners.
+/// Distance between landings of the ends of the visible spectrum, px, at the center of a cell and near its corners.
 float SheetPieces::spread(std::uint32_t cell) {
     if (spread_[cell] >= 0) return spread_[cell];
     MapBatch& batch = thread_scratch<MapBatch>([] {});

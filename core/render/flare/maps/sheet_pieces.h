@@ -1,5 +1,5 @@
-// sheet_pieces.h -- the cells of a ghost's map, divided where edges run through them, as they are drawn: each piece by the
-// light that looks at it see.
+// sheet_pieces.h -- divides the cells of a ghost's map at edges into pieces, and weights the pieces by their light,
+// estimated from samples.
 #pragma once
 #include <vector>
 
@@ -14,42 +14,42 @@ namespace dg {
 /// A square of a cell.
 struct SheetPiece {
     std::uint32_t cell;
-    Vec2f low;             // in the cell
-    float size;            // a share of the cell's
-    float level;           // its light is smooth over 2^level px, in the mean
+    Vec2f low;             // lower corner in the cell
+    float size;            // fraction of the cell's size
+    float level;           // mean level of the node spacing, 2^level px
     bool gray = false;     // all wavelengths land together
-    double share = 0;      // of all arrivals
-    double doubt = 0;      // of all exact rays that ask whether the map is right
+    double share = 0;      // share of all arrivals
+    double doubt = 0;      // share of the exact rays that correct maps
 
-    Vec2f at(Vec2f u) const { return low + u * size; }   // in the cell
+    Vec2f at(Vec2f u) const { return low + u * size; }   // cell coordinates
 };
 
-/// A unit of the front's square for each unit of a piece.
+/// Area of a piece in the front's square.
 double area(const GhostMap& map, const SheetPiece& piece);
-/// Sets a batch to places of a piece, by numbers, and points of the source.
+/// Fills a batch with points of a piece and of the source.
 void draw_places(MapBatch& batch, const SheetPiece& piece, const SmallSource& source, const CellNumbers& numbers,
                  int count);
-/// The rays of a batch in a cell.
+/// Exact rays for a batch in a cell.
 std::vector<MapRay> rays_of(const GhostMap& map, const GhostMap::Cell& cell, const MapBatch& batch, int count);
 
-/// Pieces of one sheet, with what looks at them saw.
+/// Pieces of a sheet, with their samples.
 class SheetPieces {
   public:
-    /// All outlives this. `key`: of the sheet, for random numbers.
+    /// The arguments must outlive this. `key`: seed of the sheet.
     SheetPieces(const MapRays& rays, const GhostMap& map, const SmallSource& source, const Sensor& sensor,
                 std::uint64_t key);
 
     const SheetSmooth& smooth() const { return smooth_; }
-    /// By cell: it has no pieces, as no look came through the glass.
+    /// Per cell: true if it has no pieces because no sample came through the lens.
     const std::vector<bool>& unseen() const { return unseen_; }
-    /// Adds the light that came to the frame, of a source of light 1.
+    /// Adds the light that reached the frame, for a source of light 1.
     void add_to(FlareTiles& tiles, double times) const;
-    /// The pieces, each with `times` its weight: the root of the mean square of its light over that of the frame, over the
-    /// pitch of its level. So many arrivals make the least noise for their time, also where a part of a piece is dark.
+    /// The pieces with their weights, scaled by `times`: RMS of the piece's light relative to the light of the frame,
+    /// over the node spacing. Arrivals in proportion minimize noise per time, also for partly dark pieces.
     std::vector<SheetPiece> weighed(const FlareTiles& tiles, double times) const;
 
   private:
-    /// A look: the share that gets through and comes to the frame, and that would if the way were free.
+    /// A sample: the transmitted share that reaches the frame, and the same without clipping.
     struct Seen {
         Vec2f px;
         float light, open;
@@ -58,7 +58,7 @@ class SheetPieces {
         std::vector<Seen> seen;
         int lit = 0;
         float level = 0;   // mean
-        float least_stop = 1e9f, most_stop = -1e9f;   // how far beyond edges
+        float least_stop = 1e9f, most_stop = -1e9f;   // clip values
         Vec2f low{1e9f, 1e9f}, high{-1e9f, -1e9f};    // px
     };
     SheetSmooth smoothness() const;
@@ -85,17 +85,17 @@ class SheetPieces {
     std::uint64_t key_;
     SheetSmooth smooth_;
     SheetLevel level_;
-    std::vector<float> spread_;          // by cell, px: how far apart colours land; < 0: not known yet
-    std::vector<bool> unseen_;           // by cell
-    std::vector<float> wrong_;           // by cell
+    std::vector<float> spread_;          // per cell, px: distance between landings of wavelengths; < 0: not known yet
+    std::vector<bool> unseen_;           // per cell
+    std::vector<float> wrong_;           // per cell
     std::vector<SheetPiece> pieces_;
-    std::vector<int> looks_;             // by piece
+    std::vector<int> looks_;             // per piece
     struct Doubt {
-        double unseen;   // looks that a piece has beside those that saw light
-        double wrong;    // how wrong the map is, as a share of the light
+        double unseen;   // pseudo-count of samples with light, for pieces without any
+        double wrong;    // error of the map, as a fraction of the light
     };
-    std::vector<Doubt> doubt_;           // by piece
-    std::vector<std::size_t> end_;       // of a piece's, in seen_
+    std::vector<Doubt> doubt_;           // per piece
+    std::vector<std::size_t> end_;       // per piece: end of its samples in seen_
     std::vector<Seen> seen_;
 };
 

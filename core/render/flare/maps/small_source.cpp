@@ -10,13 +10,13 @@ namespace dg {
 namespace {
 
 constexpr int kPoints = 1024, kSequence = -6;
-constexpr double kWidest = 0.035;    // tangent of half the angle: two degrees
-constexpr double kNearest = 50;      // distance, in radii of the front
-constexpr double kDeepest = 0.01;    // share of its distance that it may be nearer or farther
-constexpr double kStill = 1e-6;      // and that it may move without notice
+constexpr double kWidest = 0.035;    // largest tangent of half the angular diameter: two degrees
+constexpr double kNearest = 50;      // least distance, in radii of the front
+constexpr double kDeepest = 0.01;    // largest depth, as a fraction of its distance
+constexpr double kStill = 1e-6;      // largest motion of a static source, as a fraction of its distance
 
-constexpr int kCells = 12;           // across the circle
-constexpr double kEven = 0.65;       // share of those cells that an even disc has light in, about
+constexpr int kCells = 12;           // along the diameter of the circle
+constexpr double kEven = 0.65;       // approximate share of these cells that a uniform disc lights
 
 using Point = FlareAim::SourcePoint;
 
@@ -25,7 +25,7 @@ struct Drawn {
     Moment moment;
 };
 
-/// Points drawn over the source and the time, or over the source at one time.
+/// Samples points of the source over the exposure, or at a given time.
 std::optional<std::vector<Drawn>> points_of(const FlareAim& aim, int source, std::optional<float> time) {
     std::vector<Drawn> points;
     for (int i = 0; i < kPoints; ++i) {
@@ -40,7 +40,7 @@ std::optional<std::vector<Drawn>> points_of(const FlareAim& aim, int source, std
     return points;
 }
 
-/// The middle of the points, and how far they reach from it.
+/// Bounding circle of the points.
 std::optional<MapSource> around(const std::vector<Drawn>& points) {
     MapSource s;
     s.at_infinity = points[0].point.at_infinity, s.middle = {0, 0, 0}, s.radius = 1;
@@ -63,7 +63,7 @@ bool is_small(const MapSource& s, const std::vector<Drawn>& points, double front
     });
 }
 
-/// Effective share of the circle's cells: (sum of light)^2 over sum of squares.
+/// Effective lit share of the circle's cells: (sum of light)^2 over sum of squares.
 float filled(const std::vector<SmallSource::Point>& points) {
     std::array<double, kCells * kCells> light{};
     const auto cell = [](float x) { return std::clamp(int((0.5f + 0.5f * x) * kCells), 0, kCells - 1); };
@@ -73,7 +73,7 @@ float filled(const std::vector<SmallSource::Point>& points) {
     return squares > 0 ? float(std::min(1.0, sum * sum / squares / (kEven * light.size()))) : 0;
 }
 
-/// Against where its points are at another time.
+/// Whether the source moves, by comparing its points at two times.
 bool moves(const FlareAim& aim, int source, double far) {
     const auto begin = points_of(aim, source, 0.f), middle = points_of(aim, source, 0.5f),
                end = points_of(aim, source, 1.f);

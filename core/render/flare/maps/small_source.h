@@ -1,5 +1,5 @@
-// small_source.h -- an emitter that the lens sees within so small an angle, wherever it goes while the shutter is open,
-// that its ghosts are maps (ghost_map.h); with some of its points.
+// small_source.h -- an emitter of so small an angular size, including its motion while the shutter is open, that maps
+// can represent its ghosts (ghost_map.h); with samples of its points.
 #pragma once
 #include <optional>
 #include <vector>
@@ -10,25 +10,25 @@
 namespace dg {
 
 struct SmallSource {
-    /// A point at a moment, as the source is drawn: the source is their mean.
+    /// A sampled point at a time. The source is the mean of its points.
     struct Point {
         Vec2f shift;
-        Rgb light;           // that it brings to a unit of the square that holds the front
+        Rgb light;           // illuminance on the square that bounds the front
         Moment moment;
         EmitterPoint from;
     };
 
-    int source;              // of the aim
+    int source;              // index of the aim's source
     MapSource shape;
     std::vector<Point> points;
     bool moves;
-    float filled;            // share of its circle that shines: 1 is an even disc, 0 a point or a line
+    float filled;            // lit fraction of its circle: 1 for a uniform disc, 0 for a point or a line
 
     const Point& point(float u) const { return points[std::size_t(u * float(points.size()))]; }   // u in [0, 1)
     double luminance() const;
 };
 
-/// Nothing for one that is large, near or goes far, or is what other things reflect.
+/// Empty if the source is large, near, moves far, or is a reflection.
 std::optional<SmallSource> small_source(const FlareAim& aim, int source);
 
 }  // namespace dg
