@@ -1,4 +1,4 @@
-// beckmann.cpp -- normal distribution of slopes, and those of them that a direction sees.
+// beckmann.cpp -- the normal distribution of slopes, and sampling of visible slopes.
 #include "material/beckmann.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace dg {
 namespace {
 
 constexpr float kSqrtPi = 1.77245385f;
-constexpr float kFarthest = 4.2f;   // no slope in units of alpha is rarer in float
+constexpr float kFarthest = 4.2f;   // largest slope in units of alpha that float random numbers sample
 
 float polynomial(float x, std::initializer_list<float> coefficients) {
     float sum = 0;
@@ -23,9 +23,9 @@ float slope_of(float cosine, float spread) {
     return cosine * error_function(a, gauss) + spread * gauss / kSqrtPi;
 }
 
-/// Slopes toward a direction with this cosine and sine, in units of alpha: density (cos + s sin) exp(-s^2) for
-/// s > -cot, as s sees the direction under a cosine in proportion to the bracket. Inverted by Newton's steps where
-/// they stay between the bounds, which close in.
+/// Samples slopes toward a direction with this cosine and sine, in units of alpha. The density is
+/// (cos + s sin) exp(-s^2) for s > -cot; the bracket is proportional to the projected area of the facet. Inverts the
+/// CDF by Newton's method, safeguarded by bisection.
 float sample_slope_toward(float cosine, float sine, float u) {
     const float cot = std::min(cosine / std::max(sine, 1e-6f), kFarthest), far = std::exp(-cot * cot);
     const float erf_cot = error_function(cot, far), even = cosine * 0.5f, tilted = sine / (2 * kSqrtPi);
@@ -69,7 +69,7 @@ float StretchedBeckmann::d(Vec3f n, Vec3f h, float h2) const {
     const float c = dot(n, h), c2 = c * c;
     if (!(c2 > 0)) return 0;
     const float t = dot(tangent, h) / alpha_t, b = dot(bitangent, h) / alpha_b, steep = (t * t + b * b) / c2;
-    if (!(steep < 80)) return 0;   // next to nothing, and 0 times infinity below
+    if (!(steep < 80)) return 0;   // negligible, and would be 0 times infinity below
     const float whole = h2 / c2;
     return whole * whole * std::exp(-steep) / (kPi * alpha_t * alpha_b);
 }

@@ -1,5 +1,5 @@
-// beckmann.h -- Beckmann's microfacet distribution with height-correlated Smith masking and shadowing, to be given to
-// the facets of ggx.h in place of GGX. Its slopes are normally distributed: lobes without the long tails of GGX.
+// beckmann.h -- the Beckmann microfacet distribution with height-correlated Smith masking and shadowing; an alternative
+// to GGX in the templates of ggx.h. Its slopes are normally distributed, so lobes lack the long tails of GGX.
 // Sources: Walter et al. 2007, Microfacet Models for Refraction through Rough Surfaces, eq. 25; Heitz 2014,
 // Understanding the Masking-Shadowing Function, JCGT 3(2), eq. 66, 72 and section 5.4.
 #pragma once
@@ -7,12 +7,12 @@
 
 namespace dg {
 
-/// Error function, to 1.5e-7 (Abramowitz and Stegun 1964, 7.1.26), given exp(-x^2) as well.
+/// Error function, absolute error 1.5e-7 (Abramowitz and Stegun 1964, 7.1.26); `gauss` is exp(-x^2).
 float error_function(float x, float gauss);
-/// Its inverse on (-1, 1), to 4e-7 of its value (Giles 2012, Approximating the erfinv function).
+/// Inverse error function on (-1, 1), relative error 4e-7 (Giles 2012, Approximating the erfinv function).
 float inverse_error_function(float y);
 
-/// Facets with one roughness along `tangent` and another across it.
+/// Anisotropic facets with separate roughness along `tangent` and across it.
 struct StretchedBeckmann {
     Vec3f tangent, bitangent;
     float alpha_t, alpha_b;
@@ -23,11 +23,11 @@ struct StretchedBeckmann {
     float slope(Vec3f w, float cos_w) const;
 };
 
-/// cos (1 + 2 Lambda) at a cosine, of round facets.
+/// cos (1 + 2 Lambda) at a cosine, for isotropic facets.
 float beckmann_slope(float alpha, float cosine);
 
-/// Visible normal of Beckmann facets (world frame) seen from wo, which is above frame.z, with the roughness alpha.x
-/// along frame.x and alpha.y along frame.y.
+/// Samples a visible normal of Beckmann facets (world frame) from wo, which is above frame.z, with the roughness
+/// alpha.x along frame.x and alpha.y along frame.y.
 Vec3f sample_visible_beckmann(const Frame& frame, Vec3f wo, Vec2f alpha, Vec2f u);
 
 }  // namespace dg

@@ -13,7 +13,7 @@ const Vec3f kUp{0, 0, 1};
 
 StretchedBeckmann stretched(float alpha_t, float alpha_b) { return {{0.6f, 0.8f, 0}, {-0.8f, 0.6f, 0}, alpha_t, alpha_b}; }
 
-/// Sums what(h, solid angle) over the slopes up to five times alpha, by the midpoint rule.
+/// Midpoint rule over slopes up to five times alpha: calls the function with h and its solid angle.
 template <typename What>
 void for_facets(const StretchedBeckmann& b, What what) {
     constexpr int kSteps = 400;
@@ -72,7 +72,7 @@ TEST_CASE("Beckmann: visible normals are as frequent as they are seen") {
             const StretchedBeckmann b = stretched(u, v);
             const float r = std::sqrt(1 - z * z);
             const Vec3f wo{r * 0.28f, r * 0.96f, z};
-            // Means, squares and product of both slopes in units of alpha.
+            // First and second moments of both slopes in units of alpha.
             double drawn[5] = {}, wanted[5] = {}, mass = 0;
             const auto add = [&](double* sum, Vec3d h, double weight) {
                 const double t = dot(to_double(b.tangent), h) / (h.z * u), s = dot(to_double(b.bitangent), h) / (h.z * v);

@@ -1,4 +1,4 @@
-// bsdf.h -- scattering at a point of a surface. bsdf_kind.h says what an alternative provides, and how to add one.
+// bsdf.h -- the variant of all BSDFs. bsdf_kind.h defines the interface of an alternative, and how to add a BSDF.
 #pragma once
 #include <variant>
 
@@ -16,7 +16,7 @@
 
 namespace dg {
 
-/// A small value, made at a hit for the wavelengths of a path.
+/// A BSDF at a hit for the wavelengths of a path; a small value type.
 using Bsdf =
     std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, GltfBsdf, LayeredBsdf, TranslucentBsdf,
                  MetalBsdf, GlassBsdf, CoatedBsdf>;
@@ -27,7 +27,7 @@ template <BsdfKind... Kinds>
 inline constexpr bool kBsdfKinds<std::variant<Kinds...>> = true;
 static_assert(kBsdfKinds<Bsdf>);
 
-/// Stands for wo in evaluate_with_pdf() and sample() where several wi follow: some BSDFs find values of wo that take time.
+/// Argument for wo in evaluate_with_pdf() and sample() if several wi follow: some BSDFs precompute values of wo.
 template <Scatters B>
 auto seen_from(const B& bsdf, Vec3f wo) {
     if constexpr (requires { bsdf.seen_from(wo); })

@@ -1,5 +1,5 @@
-// bsdf_check.h -- what must hold for any BSDF, measured. For tests only; a wrapper with a
-// planted fault goes through the same functions.
+// bsdf_check.h -- measures the properties that every BSDF must have, for tests. Wrappers with planted faults go through
+// the same functions.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -37,12 +37,12 @@ inline Vec3f grid_direction(const Frame& frame, double theta, double phi) {
         to_float(Vec3d{r * std::cos(phi), r * std::sin(phi), std::cos(theta)}));
 }
 
-/// One BSDF, one wo: the surface's frame and the index at the far side.
+/// A configuration of a check: the surface's frame, wo, and the relative index of refraction.
 struct Setting {
     Frame frame;  // z is ng
     Vec3f wo;
-    float eta = 1;  // index beyond / index on the side of wo; refracted radiance is 1 /
-                    // eta^2 of it
+    float eta = 1;  // index beyond / index on the side of wo; refracted radiance is scaled by
+                    // 1 / eta^2
     float eta_squared(Vec3f wi) const {
         return dot(frame.z, wi) * dot(frame.z, wo) < 0 ? eta * eta : 1;
     }
@@ -52,7 +52,7 @@ struct Albedo {
     double value[kWavelengths] = {}, error[kWavelengths] = {};  // mean, standard error
 };
 
-/// Mean of the weights, with the 1 / eta^2 of refraction taken back: energy.
+/// Albedo as the mean of sample weights, without the 1 / eta^2 of refraction.
 template <typename B>
 Albedo albedo_by_sampling(const B& bsdf, const Setting& s, int count,
                           std::uint64_t seed) {
@@ -77,8 +77,8 @@ Albedo albedo_by_sampling(const B& bsdf, const Setting& s, int count,
     return a;
 }
 
-/// Delta lobes: coefficient and probability of each that u_lobe can lead to; two lobes of
-/// one direction, such as a smooth coat's and its base's, differ in their probability.
+/// Coefficient and probability of each delta lobe that u_lobe can select. Two lobes in the same direction, such as a
+/// smooth coat's and its base's, differ in probability.
 struct Deltas {
     double value[kWavelengths] = {};
     double probability = 0;
@@ -106,7 +106,7 @@ Deltas delta_lobes(const B& bsdf, const Setting& s) {
     return sum;
 }
 
-/// Integral of evaluate() over the sphere, midpoint rule, plus the delta lobes.
+/// Albedo as the integral of evaluate() over the sphere by the midpoint rule, plus the delta lobes.
 template <typename B>
 Albedo albedo_by_quadrature(const B& bsdf, const Setting& s, int rows = 200) {
     Albedo a;
@@ -127,8 +127,7 @@ Albedo albedo_by_quadrature(const B& bsdf, const Setting& s, int rows = 200) {
     return a;
 }
 
-/// Largest distance between the two albedos in standard errors, beyond the quadrature's
-/// own 3e-3.
+/// Largest difference between the two albedos in standard errors, beyond a quadrature error of 3e-3.
 template <typename B>
 double furnace_deviation(const B& bsdf, const Setting& s, const Albedo& quadrature,
                          std::uint64_t seed) {
@@ -142,9 +141,8 @@ double furnace_deviation(const B& bsdf, const Setting& s, const Albedo& quadratu
     return worst;
 }
 
-/// Chi-square of sample() against pdf(). The directions that sample() gives up are a cell
-/// too, so a density that does not integrate to what arrives is found even when its shape
-/// is right.
+/// Chi-square test of sample() against pdf(). Failed samples form a cell, too, so that the test detects a density with
+/// the correct shape and a wrong integral.
 template <typename B>
 double chi_square_p(const B& bsdf, const Setting& s, std::uint64_t seed) {
     constexpr int kRows = 16, kColumns = 32, kInner = 12, kCount = 50000;
@@ -185,9 +183,9 @@ double chi_square_p(const B& bsdf, const Setting& s, std::uint64_t seed) {
     }
     if (std::abs(total - 1 + static_cast<double>(rejected) / kCount) > 0.008) return 0;
     if (rejected == kCount)
-        return 1;  // nothing is seen from there, and the density says so
-    // The deltas and what is given up; where that is a rounding error of the density it
-    // is no cell.
+        return 1;  // no samples, as the density predicts
+    // Delta lobes and failed samples form a cell, unless their expected number is a rounding
+    // error.
     expected.back() = (delta + std::max(0.0, 1 - total)) * kCount;
     observed.back() = deltas + rejected;
     if (expected.back() < 0.001 * kCount && observed.back() < 0.002 * kCount)
@@ -216,9 +214,8 @@ double weight_deviation(const B& bsdf, const Setting& s, std::uint64_t seed) {
     return worst;
 }
 
-/// Asymmetry of f (f n_i^2 for refraction) over random pairs: sum of |f(a,b) - f(b,a)|
-/// over the sum of f. (A single pair near total reflection is worth only 1 % in float.)
-/// `ns` gives the cosines.
+/// Asymmetry of f (f n_i^2 for refraction) over random pairs: sum of |f(a,b) - f(b,a)| over the sum of f. (A single
+/// pair near total reflection is accurate only to 1 % in float.) `ns`: normal for the cosines.
 template <typename B>
 double asymmetry(const B& bsdf, Vec3f ns, Vec3f ng, float ior, std::uint64_t seed) {
     Random random{seed};

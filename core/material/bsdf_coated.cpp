@@ -6,14 +6,14 @@
 namespace dg {
 namespace {
 
-// Less than any coat lets in: 0 / 0 at grazing angles is 0.
+// Below the transmittance of any coat; makes 0 / 0 at grazing angles 0.
 constexpr float kNothing = 1e-9f;
 
 float bent_cosine(float cosine, float n) {
     return std::sqrt(std::max(0.f, 1 - (1 - cosine * cosine) / (n * n)));
 }
 
-/// Facets of a metal as a rough coat shows them.
+/// Facets of a metal with the roughness that a rough coat adds.
 Facets blurred(const Facets& metal, const Facets& coat, float n) {
     if (coat.smooth) return metal;
     const float spread = 0.5f * (1 - 1 / n) * (1 - 1 / n);
@@ -27,8 +27,8 @@ Facets blurred(const Facets& metal, const Facets& coat, float n) {
     return f;
 }
 
-/// Share of diffuse light from the base that comes back to it from the inside of a smooth coat: reflected there, and
-/// absorbed on both ways. Gauss's rule of five points, below the cosine of total reflection and above it.
+/// Share of diffuse light from the base that the inside of a smooth coat reflects back to it, including absorption on
+/// both passes. Five-point Gauss quadrature below and above the critical cosine.
 Spectrum returned(float n, Spectrum depth) {
     constexpr int kNodes = 5;
     constexpr float kX[kNodes] = {0.04691008f, 0.23076534f, 0.5f, 0.76923466f, 0.95308992f};
@@ -77,7 +77,7 @@ void CoatedBsdf::catch_below() {
             ((Spectrum(1.f) - r * passed * k) * ((k0 - lost_inside_) * caught_->mean()));
 }
 
-/// K; of a coat that absorbs, with what it takes.
+/// K, including absorption of the coat.
 Spectrum CoatedBsdf::to_and_fro() const {
     const float n = coat_.ior;
     const float k = 1 - passed_mean_ / (n * n) - lost_inside_;
@@ -97,7 +97,7 @@ CoatedBsdf::Bent CoatedBsdf::bent(Vec3f w, float cos_w) const {
     return b;
 }
 
-/// Chance to follow the coat's own lobe.
+/// Probability of sampling the coat's lobe.
 float CoatedBsdf::coat_probability(const Bent& o) const {
     const float above = o.reflected * coat_.tint.average();
     const float below = base_.metal ? below_mirrored(o).average()
@@ -105,7 +105,7 @@ float CoatedBsdf::coat_probability(const Bent& o) const {
     return above + below > 0 ? above / (above + below) : 1;
 }
 
-/// Light that a smooth metal below returns, back and forth.
+/// Light reflected by a smooth metal base, including inter-reflections.
 Spectrum CoatedBsdf::below_mirrored(const Bent& o) const {
     const Spectrum r = base_.reflectance.at(o.inside);
     const Spectrum way = absorbs_ ? exp(coat_.depth * (-2 / o.inside)) : Spectrum(1.f);
@@ -132,7 +132,7 @@ Evaluation CoatedBsdf::metal_lobe(const Facing& side, Vec3f wo, Vec3f wi, const 
     return {o.passed * i.passed * r / more * (f.f_cos * solid_angle), f.pdf * solid_angle};
 }
 
-/// Chance to follow the even lobe, of light that goes in to a metal.
+/// Probability of sampling the diffuse lobe, for light that enters the coat over a metal.
 float CoatedBsdf::even_probability(const Bent& o) const {
     if (!caught_) return 0;
     const float even = o.caught * even_.average() * caught_->mean();
@@ -169,7 +169,7 @@ std::optional<BsdfSample> CoatedBsdf::mirrored(const Facing& side, Vec3f wo, Spe
     return BsdfSample{.wi = wi, .weight = share / probability, .pdf = probability, .specular = true};
 }
 
-/// A direction outside by way of a metal's facet; empty where the coat reflects it totally.
+/// Samples a direction outside by reflection at a facet of the metal; empty for total internal reflection in the coat.
 std::optional<Vec3f> CoatedBsdf::sample_metal(const Facing& side, Vec3f wo, const Bent& o, Vec2f u) const {
     const Vec3f down = into(side.ns, wo, o);
     const Vec3f up = reflect(down, base_.facets.sample_visible(side.ns, down, u));

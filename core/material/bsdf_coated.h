@@ -1,23 +1,23 @@
 // bsdf_coated.h -- a clear dielectric coat, smooth or rough, over a diffuse surface or a metal.
 //
-// E(w) is the share of light from w that the coat's outside reflects, of which it lets T = 1 - E in; M is the mean of
-// E, n the coat's index, and K = 1 - (1 - M) / n^2 the share of diffuse light that its inside reflects. Light goes
-// back and forth between coat and base.
+// E(w) is the reflectance of the coat's outside for light from w, T = 1 - E its transmittance, M the mean of E, n the
+// coat's index, and K = 1 - (1 - M) / n^2 the reflectance of its inside for diffuse light. Light is reflected back and
+// forth between coat and base.
 // - Diffuse base of reflectance p: f = T(o) T(i) p / (pi n^2 (1 - p K)), which is exact for a smooth coat, reciprocal,
 //   and loses nothing for p = 1 (Wolff 1994, Diffuse-Reflectance Model for Smooth Dielectric Surfaces; Kubelka's
-//   series). Linear: p / (1 - K) in place of p / (1 - p K), as Mitsuba's plastic has it.
-// - Metal: its facets are met in directions that the coat's mean surface has bent, f_b(o', i'), so that
-//   f = T(o) T(i) f_b / (n^2 (1 - R min(E(o), E(i)))) with the metal's reflectance R; exact where both are smooth.
-//   The minimum keeps f reciprocal and within what is let in. The rest, which the coat's inside reflects back to the
-//   metal, leaves evenly: a(o) a(i) C / (pi A), a = T times its share, A the mean of a, and
-//   C = R^2 G (1 - K) / (1 - R G K) of the light that meets the metal twice and more, with the share G that its facets
-//   let pass; C = 1 for a metal of R = G = 1. A rough coat bends light by slopes of its own, which
-//   adds to the metal's roughness: alpha'^2 = alpha^2 + (1 - 1 / n)^2 alpha_coat^2 / 2 for small slopes.
-// - A coat that absorbs: exp(-depth / cos') on each way at the bent cosine; light that the inside reflects passes it
-//   twice more.
-// E of a rough coat is glass_albedo.h's, so that light which the facets block goes in. Without compensation it is
-// lost: T = 1 - E - m and K = 1 - m' - T_mean / n^2, with the shares m and mean m' that the facets block outside and
-// inside.
+//   series). Linear: p / (1 - K) in place of p / (1 - p K), as in Mitsuba's plastic.
+// - Metal: light reaches its facets in directions refracted at the coat's mean surface, f_b(o', i'), so that
+//   f = T(o) T(i) f_b / (n^2 (1 - R min(E(o), E(i)))) with the metal's reflectance R; exact if both are smooth.
+//   The minimum keeps f reciprocal and energy-conserving. The remaining light, which the coat's inside reflects back to
+//   the metal, leaves as a diffuse lobe: a(o) a(i) C / (pi A), with a = T times its share, A the mean of a, and
+//   C = R^2 G (1 - K) / (1 - R G K) for light that hits the metal at least twice. G is the share that the metal's
+//   facets do not block; C = 1 for R = G = 1. A rough coat scatters the refracted light, which increases the metal's
+//   effective roughness: alpha'^2 = alpha^2 + (1 - 1 / n)^2 alpha_coat^2 / 2 for small slopes.
+// - Absorbing coat: a factor exp(-depth / cos') for each pass at the refracted cosine; light reflected by the inside
+//   passes twice more.
+// E of a rough coat is from glass_albedo.h, so light blocked by its facets counts as transmitted. Without compensation
+// that light is lost: T = 1 - E - m and K = 1 - m' - T_mean / n^2, where m and the mean m' are the shares that facets
+// block outside and inside.
 #pragma once
 #include <optional>
 
@@ -26,17 +26,17 @@
 
 namespace dg {
 
-/// The coat.
+/// Parameters of the coat.
 struct ClearCoat {
     float ior = 1.5f;
     Facets facets;
-    Spectrum tint{1.f};    // of what the coat reflects
+    Spectrum tint{1.f};    // factor on the coat's reflection
     Spectrum depth{0.f};   // optical depth: absorption times thickness
-    bool linear = false;   // no colour by light that goes back and forth
-    bool compensated = true;   // of light that its facets block
+    bool linear = false;   // no colour shift by inter-reflections
+    bool compensated = true;   // light blocked by its facets is not lost
 };
 
-/// The surface below: diffuse, or a metal whose index is relative to the coat's.
+/// The base: diffuse, or a metal with an index relative to the coat's.
 struct CoatedBase {
     bool metal = false;
     Spectrum diffuse{0.f};
@@ -63,13 +63,13 @@ class CoatedBsdf {
     float reversed(Vec3f, Vec3f) const { return 1; }
 
   private:
-    /// A direction as the coat bends it, and what it loses there.
+    /// A direction refracted by the coat, and its shares of light.
     struct Bent {
         float outside = 0, inside = 0;   // cosines
         float reflected = 0;             // E
         float entering = 0;              // T
-        float caught = 0;                // a, what the coat takes aside
-        Spectrum passed{0.f};            // and the way down
+        float caught = 0;                // a: share of the diffuse lobe
+        Spectrum passed{0.f};            // T times the absorption of a pass
     };
     Bent bent(Vec3f w, float cos_w) const;
     Vec3f into(Vec3f n, Vec3f w, const Bent& b) const { return (w - n * b.outside) * (1 / coat_.ior) + n * b.inside; }
@@ -87,10 +87,10 @@ class CoatedBsdf {
 
     ClearCoat coat_;
     CoatedBase base_;
-    std::optional<GlassAlbedo> rough_;      // of a rough coat
-    std::optional<CaughtBelow> caught_;     // of a rough metal
+    std::optional<GlassAlbedo> rough_;      // only for a rough coat
+    std::optional<CaughtBelow> caught_;     // only for a metal
     Spectrum even_{0.f};                    // C / A
-    Spectrum diffuse_;                      // p / (n^2 (1 - p K)), its pi aside
+    Spectrum diffuse_;                      // p / (n^2 (1 - p K)), without 1 / pi
     float passed_mean_ = 1;                 // T_mean: 1 - M
     float lost_inside_ = 0;                 // m'
     bool absorbs_;

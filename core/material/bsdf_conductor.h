@@ -1,4 +1,4 @@
-// bsdf_conductor.h -- a GGX metal of constant reflectance, on both sides.
+// bsdf_conductor.h -- a two-sided GGX metal of constant reflectance.
 #pragma once
 #include <optional>
 
@@ -12,7 +12,7 @@ struct ConductorBsdf {
     Spectrum reflectance;
     float alpha = 0;
 
-    static constexpr bool kOneLobe = true;   // sample() has no use for u_lobe
+    static constexpr bool kOneLobe = true;   // sample() ignores u_lobe
     bool is_specular() const { return alpha < kSmoothAlpha; }
     float diffuse_share(Vec3f, Vec3f) const { return 0; }
 

@@ -1,8 +1,6 @@
-// bsdf_dielectric.h -- clear glass, smooth or GGX rough; the side of the normals is
-// outside. Radiance is transported: light that enters a medium of relative index eta is
-// compressed into a smaller solid angle, so radiance inside is eta^2 times that outside,
-// and a path traced from the eye carries 1 / eta^2 (Veach 1997, 5.2). Into the glass and
-// out again the factors cancel.
+// bsdf_dielectric.h -- clear glass, smooth or GGX rough; normals point outside. Transports radiance: light that enters
+// a medium of relative index eta is compressed into a smaller solid angle, so the radiance inside is higher by eta^2,
+// and a path from the camera carries 1 / eta^2 (Veach 1997, 5.2). The factors of entering and leaving cancel.
 #pragma once
 #include <optional>
 
@@ -17,13 +15,12 @@ namespace dg {
 struct DielectricBsdf {
     Vec3f ns, ng;
     Spectrum tint{1.f};
-    float ior = 1.5f;  // the hero's
+    float ior = 1.5f;  // at the hero wavelength
     float alpha = 0;
-    bool disperses = false;  // what is bent is the hero's alone
-    Spectrum iors{1.f};      // of the four wavelengths, if so
+    bool disperses = false;  // refracted light is for the hero only
+    Spectrum iors{1.f};      // per wavelength, if it disperses
 
-    /// An interface without a change of index has no facet normals to scatter about: a
-    /// window.
+    /// An interface without a change of index does not scatter: it is a window.
     static constexpr bool kOneLobe = false;
     bool is_specular() const { return alpha < kSmoothAlpha || std::abs(ior - 1) < 1e-3f; }
     float diffuse_share(Vec3f, Vec3f) const { return 0; }
@@ -85,7 +82,7 @@ struct DielectricBsdf {
     }
 
   private:
-    /// Split of light at a facet whose normal makes cos_h with wo, and the chance to reflect.
+    /// Fresnel split at a facet with the cosine cos_h to wo, and the probability of reflection.
     struct Split {
         Spectrum reflectance, transmittance;
         float probability;
@@ -93,7 +90,7 @@ struct DielectricBsdf {
     Split split(float cos_h, float eta, bool front) const {
         const float r = fresnel_dielectric(cos_h, eta);
         if (!disperses) return {r, 1 - r, r};
-        // Reflected light serves all wavelengths, transmitted light the hero's.
+        // Reflection serves all wavelengths, refraction only the hero.
         const Spectrum all = fresnel_dielectric(cos_h, iors, front);
         const float mean = all.average();
         return {all, hero_alone() * (1 - r), mean / (mean + 1 - r)};

@@ -1,4 +1,4 @@
-// bsdf_diffuse.h -- Lambert, seen from both sides.
+// bsdf_diffuse.h -- two-sided Lambertian reflection.
 #pragma once
 #include <optional>
 
@@ -29,7 +29,7 @@ struct DiffuseBsdf {
         if (side.cos_o <= 0 || cos_i <= 0 || !side.reflects(wi)) return std::nullopt;
         return BsdfSample{.wi = wi, .weight = reflectance, .pdf = cos_i / kPi};
     }
-    static constexpr bool kOneLobe = true;   // sample() has no use for u_lobe
+    static constexpr bool kOneLobe = true;   // sample() ignores u_lobe
     bool is_specular() const { return false; }
     Interior interior() const { return {}; }
     bool bounds_volume() const { return false; }

@@ -5,7 +5,7 @@ namespace dg {
 
 namespace {
 
-/// Facets as rough in every direction: as many of two roughnesses block, whatever the direction, near the normal.
+/// Isotropic facets that block the same share of light near the normal as anisotropic facets.
 Facets rounded(Facets f) {
     f.ggx.alpha_t = f.ggx.alpha_b = std::sqrt(f.ggx.alpha_t * f.ggx.alpha_b);
     return f;
@@ -133,7 +133,7 @@ std::optional<BsdfSample> GlassBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) con
 Spectrum GlassBsdf::straight_transmittance(Vec3f wo) const {
     const Facing side(ns, ng, wo);
     if (!is_specular() || side.cos_o <= 0) return 0.f;
-    // Light counts as if it were not bent: see bsdf.h.
+    // Ignores refraction: see straight_transmittance() in bsdf_kind.h.
     return tint * (Spectrum(1.f) - reflectance(side.cos_o, thin || ior >= 1));
 }
 

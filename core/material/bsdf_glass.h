@@ -1,15 +1,16 @@
-// bsdf_glass.h -- clear glass with all that DielectricBsdf has not: facets of two roughnesses, a tint of reflections,
-// panes, and light that bounces from facet to facet.
+// bsdf_glass.h -- clear glass with features beyond DielectricBsdf: anisotropic facets, tinted reflections, panes, and
+// multiple scattering between facets.
 //
-// A pane has two parallel faces, closer together than anything sees: light goes through it unbent, and what the faces
-// reflect back and forth leaves in the same two directions. With F of one face, R = F + (1 - F)^2 F / (1 - F^2) =
-// 2 F / (1 + F) (Stokes 1860, On the Intensity of the Light Reflected from or Transmitted through a Pile of Plates).
-// A rough pane mirrors its reflected lobe through the surface.
+// A pane has two parallel faces at a negligible distance: light passes it unrefracted, and inter-reflections leave in
+// the same two directions. With F of a single face, R = F + (1 - F)^2 F / (1 - F^2) = 2 F / (1 + F) (Stokes 1860, On
+// the Intensity of the Light Reflected from or Transmitted through a Pile of Plates). The transmitted lobe of a rough
+// pane is its reflected lobe, mirrored at the surface.
 //
-// Light that facets block, m(cos) of it, is scattered evenly, as light that met several facets would be: reflected by
-// (1 - T) m(o) m(i) / (pi M), with M the mean of m, and transmitted by T m(o) m'(i) / (pi eta^2 M') with m' of the
-// other side (Kulla and Conty 2017, Revisiting Physically Based Shading at Imageworks, SIGGRAPH course). It is
-// reciprocal if T M = n^2 T' M'. As the means of 1 - F keep to the same ratio, T = (1 - F_mean) min(M, M') / M does.
+// The share m(cos) of light that facets block is scattered diffusely, as an approximation of multiple scattering:
+// reflected by (1 - T) m(o) m(i) / (pi M), with M the mean of m, and transmitted by T m(o) m'(i) / (pi eta^2 M') with
+// m' of the other side (Kulla and Conty 2017, Revisiting Physically Based Shading at Imageworks, SIGGRAPH course). The
+// lobe is reciprocal if T M = n^2 T' M'. T = (1 - F_mean) min(M, M') / M satisfies this, since the means of 1 - F have
+// the same ratio.
 #pragma once
 #include <optional>
 
@@ -20,12 +21,12 @@
 
 namespace dg {
 
-/// Light that rough glass would lose: how much, and which share of it is transmitted, from either side.
+/// Energy that single scattering at rough glass loses, and the share of it that is transmitted, for both sides.
 struct GlassCompensation {
     GlassAlbedo albedo;
     float transmitted_thin = 0, transmitted_dense = 0, transmitted_pane = 0;
 
-    /// n >= 1.
+    /// `n` >= 1: relative index.
     GlassCompensation(float n, const Facets& facets);
     bool used() const { return albedo.mean().missing_thin > 1e-6f && albedo.mean().missing_dense > 1e-6f; }
 };
@@ -33,10 +34,10 @@ struct GlassCompensation {
 struct GlassBsdf {
     Vec3f ns, ng;
     Spectrum reflection_tint{1.f}, tint{1.f};
-    float ior = 1.5f;  // the hero's
+    float ior = 1.5f;  // at the hero wavelength
     bool thin = false;
-    bool disperses = false;  // what is bent is the hero's alone
-    Spectrum iors{1.5f};     // of the four wavelengths
+    bool disperses = false;  // refracted light is for the hero only
+    Spectrum iors{1.5f};     // per wavelength
     Facets facets{};
     std::optional<GlassCompensation> compensation{};
 
@@ -53,7 +54,7 @@ struct GlassBsdf {
     Spectrum straight_transmittance(Vec3f wo) const;
 
   private:
-    /// Split of light at a facet whose normal makes cos_h with wo, and the chance to reflect.
+    /// Fresnel split at a facet with the cosine cos_h to wo, and the probability of reflection.
     struct Split {
         Spectrum reflected, transmitted;
         float probability;
@@ -63,7 +64,7 @@ struct GlassBsdf {
     float eta(bool front) const { return thin ? 1.f : front ? ior : 1 / ior; }
     Facet joined(const Facing& side, Vec3f wo, Vec3f wi, float cos_i, bool reflected) const;
 
-    /// The evenly scattered light as seen from wo: its share, and the share of that which is transmitted.
+    /// The diffuse lobe of multiple scattering from wo: its share of light, and its transmitted fraction.
     struct Even {
         float share = 0, transmitted = 0, mean_here = 1, mean_beyond = 1;
         bool thin_side = true;

@@ -4,8 +4,7 @@
 namespace dg {
 namespace {
 
-/// Without a change of index there is no facet normal to refract about; a hair of one is
-/// invisible.
+/// Facets need a change of index to refract; this minimum is invisible.
 float bending_ior(float ior) {
     return std::abs(ior - 1) < kSmoothAlpha || ior <= 0 ? 1 + kSmoothAlpha : ior;
 }
@@ -15,15 +14,13 @@ Spectrum clamped(Spectrum s, float low, float high) {
     return s;
 }
 
-/// E_c = E + F'^2 (1 - Ess) written in the lanes of LobeAlbedo, for F' = F0 in the second
-/// term: light that one facet reflects into another has its second chance to get in, so
-/// F0 = 1 leaves nothing.
+/// E_c = E + F'^2 (1 - Ess) in the lanes of LobeAlbedo, with F' = F0 in the second term: light reflected from facet to
+/// facet may enter at the second facet, so that nothing enters for F0 = 1.
 Spectrum coupling_of(float f0, float f90) {
     return {f0 - f0 * f0, f90 - f0 * f90, f0 * (f90 - f0), f0 * f0};
 }
 
-/// Angle in air of a direction that makes cos_h with a facet, on either side; 0 where it
-/// is totally reflected.
+/// Cosine in air of a direction with the cosine cos_h to a facet, on either side; 0 for total internal reflection.
 float cos_in_air(float cos_h, float eta) {
     if (eta >= 1) return cos_h;
     return std::sqrt(std::max(0.f, 1 - (1 - cos_h * cos_h) / (eta * eta)));
@@ -54,12 +51,12 @@ GltfBsdf::GltfBsdf(const GltfSurface& s, Vec3f shading, Vec3f geometric)
       smooth(alpha < kSmoothAlpha) {
     row = smooth ? GgxAlbedo::smooth_row() : GgxAlbedo::instance().row(s.roughness);
 
-    f0_ior = normal_reflectance(s.ior);  // 1 for ior 0, as KHR_materials_ior wants it
+    f0_ior = normal_reflectance(s.ior);  // 1 for ior 0 (KHR_materials_ior)
     f0 = clamped(s.specular_color * f0_ior, 0, 1) * s.specular;
     f0_max = f0.max();
     f90 = s.specular;
     ior = bending_ior(s.ior);
-    if (s.ior <= 0) f0_ior = 0;  // the exact curve below is that of the index 1
+    if (s.ior <= 0) f0_ior = 0;  // the exact curve below uses the index 1
     disperses = s.disperses;
     if (disperses) disperse(s);
 
@@ -68,8 +65,7 @@ GltfBsdf::GltfBsdf(const GltfSurface& s, Vec3f shading, Vec3f geometric)
     transmitted = s.base * clear_weight;
     clear = clear_weight <= 0 ? Clear::none : s.volume ? Clear::volume : Clear::thin;
 
-    // A thin clear part reflects as the opaque one does; a volume follows the exact curve
-    // instead.
+    // A thin clear part reflects like the opaque part; a volume uses the exact curve.
     const float layered = clear == Clear::volume ? dielectric - clear_weight : dielectric;
     const float r90 = s.metallic + f90 * layered;
     r0 = s.base * s.metallic + f0 * layered;
@@ -118,7 +114,7 @@ void GltfBsdf::disperse(const GltfSurface& s) {
     f0_max = std::min(s.specular_color.max() * f0_ior, 1.f) * s.specular;
 }
 
-/// Reflectance like the volume's share in split(), each wavelength by its own curve.
+/// Reflectance as in split() for a volume, with a separate curve per wavelength.
 Spectrum GltfBsdf::dispersed_reflectance(float cos_h, bool front) const {
     Spectrum r = fresnel_dielectric(cos_h, iors, front);
     for (int k = 0; k < kWavelengths; ++k) {
@@ -135,8 +131,8 @@ void GltfBsdf::stretch(const GltfSurface& s) {
     stretched = StretchedGgx{s.tangent, cross(ns, s.tangent), std::max(along, across),
                              across};
     smooth = false;
-    // The albedo of each direction is that of round facets which mask it alike; its mean
-    // over half a turn by the midpoint rule.
+    // Each direction has the albedo of isotropic facets with the same masking. The mean over azimuths is computed by
+    // the midpoint rule over half a turn.
     constexpr int kTurns = 8;
     row.mean = 0.f;
     for (int i = 0; i < kTurns; ++i) {
@@ -239,7 +235,7 @@ Evaluation GltfBsdf::evaluate_diffuse(const Seen& seen, Vec3f wi, float cos_i) c
             seen.diffuse_probability * (1 - through_share) * cos_i / kPi};
 }
 
-/// cos_i > 0 is that of wi with the normal of its own side.
+/// cos_i > 0: cosine between wi and the normal on its side.
 Evaluation GltfBsdf::evaluate_through(const Seen& seen, Vec3f wi, float cos_i,
                                       float eta) const {
     const float e_i = has_specular ? weigh(lobe_albedo(wi, cos_i), coupling) : 0.f;

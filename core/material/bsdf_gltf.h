@@ -1,34 +1,28 @@
-// bsdf_gltf.h -- glTF 2.0 metallic-roughness with KHR_materials_{ior, specular,
-// transmission, volume}. Source: glTF 2.0 specification, Appendix B, and the extensions'
-// own texts:
+// bsdf_gltf.h -- glTF 2.0 metallic-roughness with KHR_materials_{ior, specular, transmission, volume}. Source: glTF 2.0
+// specification, Appendix B, and the texts of the extensions:
 //   material   = mix(dielectric, metal, metallic)
-//   metal      = specular_brdf * (base + (1 - base) s),                    s = (1 -
-//   |V.H|)^5 dielectric = fresnel_mix(base = mix(diffuse, specular_btdf * base,
-//   transmission), specular_brdf) F          = F0 + (F90 - F0) s, F90 = specular, F0 =
-//   min(((ior - 1) / (ior + 1))^2 specular_color, 1) specular  (ior 0: F0 of 1 before)
-// with alpha = roughness^2. As fresnel_mix is linear in its base, the dielectric is a
-// mixture of a clear one (weight `transmission`) and an opaque one. Three choices, all
-// within what the Appendix leaves to an implementation:
-// - Diffuse under specular. (1 - F(V.H)) of the Appendix reflects up to 1.9 times the
-// light at grazing
-//   angles. Here (1 - E(wo)) (1 - E(wi)) / (1 - mean E), reciprocal and lossless for
-//   white (Kelemen and Szirmay-Kalos 2001; Ashikhmin and Shirley 2000), E from
-//   ggx_albedo.h.
-// - Thin walls (thickness 0): no bending; the transmitted lobe is the reflected one
-// mirrored through
-//   the surface, with 1 - F(V.H).
-// - Volumes: Walter 2007 with 1 / eta^2 (see bsdf_dielectric.h), and Schlick's s replaced
-// by the exact
-//   Fresnel curve rescaled to [0,1], which also knows total internal reflection.
+//   metal      = specular_brdf * (base + (1 - base) s), s = (1 - |V.H|)^5
+//   dielectric = fresnel_mix(base = mix(diffuse, specular_btdf * base, transmission), specular_brdf)
+//   F          = F0 + (F90 - F0) s, F90 = specular,
+//   F0         = min(((ior - 1) / (ior + 1))^2 specular_color, 1) specular, with 1 for the square if ior is 0
+// with alpha = roughness^2. As fresnel_mix is linear in its base, the dielectric is a mixture of a clear dielectric
+// (weight `transmission`) and an opaque dielectric. The Appendix leaves these choices to implementations:
+// - Diffuse under specular. (1 - F(V.H)) of the Appendix gains energy at grazing angles, up to a factor of 1.9. Here
+//   (1 - E(wo)) (1 - E(wi)) / (1 - mean E), reciprocal and lossless for white (Kelemen and Szirmay-Kalos 2001;
+//   Ashikhmin and Shirley 2000), with E from ggx_albedo.h.
+// - Thin walls (thickness 0): no refraction; the transmitted lobe is the reflected lobe mirrored at the surface, with
+//   1 - F(V.H).
+// - Volumes: Walter 2007 with 1 / eta^2 (see bsdf_dielectric.h), and the exact Fresnel curve rescaled to [0,1] in place
+//   of Schlick's s, which includes total internal reflection.
 // - KHR_materials_dispersion: see dispersive.h; F0 follows the index of each wavelength.
-// - KHR_materials_diffuse_transmission takes its share of the diffuse lobe, behind the same
-//   interface. Into a volume it does not bend, but carries 1 / eta^2 as refraction does, so
-//   that light which enters by one lobe and leaves by the other keeps its energy. (So it is
-//   not reciprocal there: of light that is diffuse inside, a real surface lets less out.)
-// KHR_materials_anisotropy stretches the facets of every specular lobe: alpha along the
-// direction is mix(alpha, 1, strength^2). KHR_materials_iridescence puts a film on them:
-// F = mix(F, F_film, factor) with thin_film.h in place of the extension's fit to RGB; the
-// base's index comes from its F0. What passes is the rest at each wavelength.
+// - KHR_materials_diffuse_transmission takes its share of the diffuse lobe, behind the same interface. Into a volume
+//   the lobe is not refracted, but carries 1 / eta^2 like refraction, so that light which enters by one of these lobes
+//   and leaves by the other keeps its energy. (It is not reciprocal there: a real surface transmits less of the diffuse
+//   light inside.)
+// KHR_materials_anisotropy stretches the facets of every specular lobe: alpha along the direction is
+// mix(alpha, 1, strength^2). KHR_materials_iridescence adds a film: F = mix(F, F_film, factor) with thin_film.h in
+// place of the extension's fit to RGB; the index of the base is derived from its F0. Transmission is 1 - F at each
+// wavelength.
 #pragma once
 #include <optional>
 
@@ -41,13 +35,13 @@
 
 namespace dg {
 
-/// A glTF material at one point, textures and factors multiplied.
+/// Parameters of a glTF material at a hit, factors times textures.
 struct GltfSurface {
     Spectrum base{1.f};
     float metallic = 0, roughness = 1;
-    float ior = 1.5f, specular = 1;  // a dispersive volume: the hero's index
-    bool disperses = false;          // such a volume, and the path has all wavelengths
-    Spectrum iors{1.5f};             // of the four, if it disperses
+    float ior = 1.5f, specular = 1;  // ior: at the hero wavelength
+    bool disperses = false;          // dispersive volume, and the path has all wavelengths
+    Spectrum iors{1.5f};             // per wavelength, if it disperses
     Spectrum specular_color{1.f};
     float transmission = 0;
     float diffuse_transmission = 0;  // share of the diffuse lobe
@@ -55,25 +49,25 @@ struct GltfSurface {
     bool volume = false;  // thickness > 0
     Interior interior;
     float anisotropy = 0;  // strength
-    Vec3f tangent{};       // unit, where the roughness grows; set if anisotropy > 0
+    Vec3f tangent{};       // unit, direction of increased roughness; set if anisotropy > 0
     float iridescence = 0;
     ThinFilm film{};
 };
 
-/// F of iridescence: what a film on the dielectric and on the metal reflects.
+/// Fresnel term of iridescence: reflectance of a film on the dielectric and on the metal.
 struct FilmFresnel {
     ThinFilm film;
     float factor;
-    float metal, dielectric;  // weights in what reflects like the opaque surface
+    float metal, dielectric;  // weights in the opaque reflection
     float specular;
     Spectrum metal_ior, dielectric_ior;
 
-    /// `f0` of the dielectric with `specular` in it; `opaque` is the weight it has.
+    /// `f0`: of the dielectric, including `specular`. `opaque`: weight of the opaque dielectric.
     FilmFresnel(const GltfSurface& surface, Spectrum f0, float opaque);
     Spectrum on_dielectric(float cos_h) const {
         return specular * film.reflectance(cos_h, dielectric_ior);
     }
-    /// The opaque surface, of which `plain` is reflected without a film.
+    /// Reflectance of the opaque surface; `plain`: its reflectance without a film.
     Spectrum mixed(Spectrum plain, float cos_h) const;
 };
 
@@ -83,31 +77,31 @@ struct GltfBsdf {
     Vec3f ns, ng;
     float alpha;
     bool smooth;        // the specular lobes are deltas
-    bool has_specular;  // false: Lambert alone
+    bool has_specular;  // false: Lambertian only
     Clear clear;
-    Spectrum diffuse;      // base colour of the diffuse lobe, Kelemen's mean included
-    float diffuse_albedo;  // mean over wavelengths, mean not included; 0: no diffuse lobe
-    Spectrum through{0.f};    // as `diffuse`, of the diffuse lobe on the far side
-    float through_share = 0;  // of the two diffuse lobes together
-    bool bends = false;       // a volume that light enters
-    Spectrum r0, r90_r0;   // reflection that follows Schlick: r0 + r90_r0 s
-    Spectrum f0;           // dielectric F0, of the clear part
+    Spectrum diffuse;      // base colour of the diffuse lobe over 1 - mean E
+    float diffuse_albedo;  // mean base colour over wavelengths; 0: no diffuse lobe
+    Spectrum through{0.f};    // as `diffuse`, for diffuse transmission
+    float through_share = 0;  // share of diffuse transmission in both diffuse lobes
+    bool bends = false;       // diffuse transmission enters a volume
+    Spectrum r0, r90_r0;   // reflection with Schlick's curve: r0 + r90_r0 s
+    Spectrum f0;           // dielectric F0, for the clear part
     float f90, f0_max;
     float clear_weight;    // (1 - metallic) transmission
-    Spectrum transmitted;  // its colour
-    float ior, f0_ior;     // the hero's, where the volume disperses
-    bool disperses;        // what is bent is the hero's alone
+    Spectrum transmitted;  // colour of the clear part
+    float ior, f0_ior;     // at the hero wavelength, if the volume disperses
+    bool disperses;        // refracted light is for the hero only
     Spectrum iors;
     GgxAlbedo::Row row;
     Spectrum coupling;         // albedo E_c of the interface above the diffuse lobe
-    Spectrum specular_albedo;  // estimate, all specular lobes together
+    Spectrum specular_albedo;  // estimate for the sum of all specular lobes
     Interior inside;
     std::optional<StretchedGgx> stretched;
     std::optional<FilmFresnel> film;
 
     GltfBsdf(const GltfSurface& surface, Vec3f ns, Vec3f ng);
 
-    /// Facts that wo alone decides, for whoever asks for several wi.
+    /// Precomputed values of wo, for several wi.
     struct Seen {
         Vec3f wo;
         Facing side;
@@ -125,7 +119,7 @@ struct GltfBsdf {
     float pdf(Vec3f wo, Vec3f wi) const { return evaluate_with_pdf(wo, wi).pdf; }
     static constexpr bool kOneLobe = false;
     bool is_specular() const { return smooth && diffuse_albedo == 0; }
-    /// Estimate of the share of light from wo that is scattered, for choosing lobes.
+    /// Estimated albedo for wo, for choosing lobes.
     float albedo_estimate(Vec3f wo) const;
     Interior interior() const { return inside; }
     bool bounds_volume() const { return bends; }
@@ -134,8 +128,7 @@ struct GltfBsdf {
     float diffuse_share(Vec3f wo, Vec3f wi) const;
 
   private:
-    /// Split of light at a facet whose normal makes cos_h with wo: colours, and the chance to
-    /// reflect.
+    /// Fresnel split at a facet with the cosine cos_h to wo: colours, and the probability of reflection.
     struct Split {
         Spectrum reflected, transmitted{0.f};
         float reflect_probability = 1;

@@ -1,4 +1,4 @@
-// bsdf_kind.h -- what a BSDF provides. bsdf.h asserts it of each alternative, transport/phase_bsdf.h of the phase
+// bsdf_kind.h -- concepts of BSDFs. bsdf.h asserts them for each alternative, transport/media/phase_bsdf.h for phase
 // functions.
 //
 // To add a BSDF:
@@ -20,29 +20,29 @@
 
 namespace dg {
 
-/// f |cos wi| for a pair of directions, with the density of sample(). Delta lobes count in neither.
+/// f |cos wi| for a pair of directions, and the density of sample(). Both exclude delta lobes.
 template <typename B>
 concept Evaluates = requires(const B& bsdf, Vec3f wo, Vec3f wi) {
     { bsdf.evaluate_with_pdf(wo, wi) } -> std::same_as<Evaluation>;
 };
 
-/// Draws a direction wi; nothing where all light is absorbed. kOneLobe: sample() ignores u_lobe, which then costs no
-/// random number.
+/// Samples a direction wi; empty where all light is absorbed. kOneLobe: sample() ignores u_lobe, so that no random
+/// number is drawn for it.
 template <typename B>
 concept Samples = requires(const B& bsdf, Vec3f wo, float u_lobe, Vec2f u) {
     { bsdf.sample(wo, u_lobe, u) } -> std::same_as<std::optional<BsdfSample>>;
     { B::kOneLobe } -> std::convertible_to<bool>;
 };
 
-/// is_specular(): all lobes are deltas, so that light sampling cannot find them. diffuse_share(): part of f without
-/// deltas that is diffuse, 0 to 1; effects of shadow catchers need it.
+/// is_specular(): all lobes are deltas, so that light sampling cannot find them. diffuse_share(): diffuse fraction of f
+/// without delta lobes, 0 to 1, for the effects of shadow catchers.
 template <typename B>
 concept HasLobes = requires(const B& bsdf, Vec3f wo, Vec3f wi) {
     { bsdf.is_specular() } -> std::same_as<bool>;
     { bsdf.diffuse_share(wo, wi) } -> std::convertible_to<float>;
 };
 
-/// bounds_volume(): behind the surface lies another medium, interior(). A thin sheet bounds none.
+/// bounds_volume(): the surface bounds a volume with the medium interior(). False for thin sheets.
 template <typename B>
 concept HasInterior = requires(const B& bsdf) {
     { bsdf.interior() } -> std::same_as<Interior>;
@@ -58,22 +58,22 @@ concept HasDeltas = requires(const B& bsdf, Vec3f wo, Vec3f wi) {
     { bsdf.reversed(wo, wi) } -> std::convertible_to<float>;
 };
 
-/// The halves of evaluate_with_pdf(), for light paths and for tests.
+/// The parts of evaluate_with_pdf(), for light paths and tests.
 template <typename B>
 concept EvaluatesApart = requires(const B& bsdf, Vec3f wo, Vec3f wi) {
     { bsdf.evaluate(wo, wi) } -> std::convertible_to<Spectrum>;
     { bsdf.pdf(wo, wi) } -> std::convertible_to<float>;
 };
 
-/// Scatters a path at a vertex: a BSDF, or a phase function in the form of one.
+/// Scatters a path at a vertex: a BSDF, or a phase function with the interface of a BSDF.
 template <typename B>
 concept Scatters = Evaluates<B> && Samples<B> && HasLobes<B> && HasInterior<B>;
 
-/// A phase function: it scatters within a medium, so that a ray leaves no medium there.
+/// A phase function: rays do not leave the medium where it scatters.
 template <typename B>
 concept PhaseKind = Scatters<B> && requires { requires B::kInMedium; };
 
-/// A BSDF: a small value that is made at a hit and copied.
+/// A BSDF: a small value type, created at a hit.
 template <typename B>
 concept BsdfKind = std::copyable<B> && Scatters<B> && !PhaseKind<B> && EvaluatesApart<B> && HasDeltas<B>;
 

@@ -5,7 +5,7 @@
 namespace dg {
 namespace {
 
-/// All that a BSDF needs, and no light.
+/// A complete BSDF that is black.
 struct Complete {
     static constexpr bool kOneLobe = true;
     Evaluation evaluate_with_pdf(Vec3f, Vec3f) const { return {}; }
@@ -20,7 +20,7 @@ struct Complete {
     float reversed(Vec3f, Vec3f) const { return 1; }
 };
 
-struct NoDensity : Complete {   // f alone: nothing can be weighted by it
+struct NoDensity : Complete {   // lacks the density that MIS needs
     Spectrum evaluate_with_pdf(Vec3f, Vec3f) const { return 0.f; }
 };
 struct NeverAbsorbs : Complete {
@@ -38,13 +38,13 @@ struct NoSide : Complete {
 struct NoDeltas : Complete {
     void straight_transmittance() const {}
 };
-struct OneWay : Complete {   // a light path cannot come back
+struct OneWay : Complete {   // lacks the reverse direction for light paths
     void reversed() const {}
 };
-struct Changes : Complete {   // a vertex sees it as constant
+struct Changes : Complete {   // not const: a vertex holds a constant BSDF
     bool is_specular() { return false; }
 };
-struct Fixed : Complete {   // no hit can hold another one
+struct Fixed : Complete {   // not assignable
     const float value = 0;
 };
 struct InMedium : Complete {

@@ -39,7 +39,7 @@ Spectrum LayeredBsdf::straight_transmittance(Vec3f wo) const {
     return base.straight_transmittance(wo) * (passed * (1 - shares(wo).coat));
 }
 
-/// The coat takes its share by the angle of wo alone. What it reflects itself leaves under that angle too.
+/// The coat's share depends on wo only, and its mirror direction has the same angle.
 float LayeredBsdf::reversed(Vec3f wo, Vec3f wi) const {
     const float there = 1 - shares(wo).coat;
     return there > 0 ? (1 - shares(wi).coat) / there : 0;
@@ -65,8 +65,8 @@ float LayeredBsdf::diffuse_share(Vec3f wo, Vec3f wi) const {
     const Facing side(base.ns, base.ng, wo);
     const float all = evaluate(wo, wi).average();
     if (!(all > 0)) return 1;
-    const float kept = (1 - shares(wo).coat) * (sheen.present() ? sheen.passed(side.cos_o, dot(side.ns, wi)) : 1);
-    const float glossy = base.evaluate(wo, wi).average() * (1 - base.diffuse_share(wo, wi)) * kept;
+    const float base_weight = (1 - shares(wo).coat) * (sheen.present() ? sheen.passed(side.cos_o, dot(side.ns, wi)) : 1);
+    const float glossy = base.evaluate(wo, wi).average() * (1 - base.diffuse_share(wo, wi)) * base_weight;
     const float coated = coat.evaluate_with_pdf(base.ng, wo, wi).f_cos.average() * shares(wo).coat;
     return std::clamp(1 - (glossy + coated) / all, 0.f, 1.f);
 }
@@ -111,7 +111,7 @@ std::optional<BsdfSample> LayeredBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) c
     return side.reflects(s.wi) ? weighed(s, wo) : std::nullopt;
 }
 
-/// Weight and density of a direction that is no delta, over all lobes.
+/// Sets weight and density of a non-delta direction, summed over all lobes.
 std::optional<BsdfSample> LayeredBsdf::weighed(BsdfSample s, Vec3f wo) const {
     const Evaluation e = evaluate_with_pdf(wo, s.wi);
     if (!(e.pdf > 0)) return std::nullopt;
@@ -127,7 +127,7 @@ std::optional<BsdfSample> LayeredBsdf::sample_coat(const Shares& p, Vec3f wo,
         coat.smooth() ? side.ns : sample_visible_normal(side.ns, wo, coat.alpha, u);
     BsdfSample s;
     s.wi = reflect(wo, h);
-    // A facet may reflect to below the coat's horizon, where its density is 0.
+    // A facet may reflect below the coat's horizon, where the density is 0.
     if (!side.reflects(s.wi) || dot(side.ns, s.wi) <= 0) return std::nullopt;
     if (!coat.smooth()) return weighed(s, wo);
     s.specular = true;

@@ -1,10 +1,9 @@
-// bsdf_layered.h -- what lies on a glTF material: sheen (KHR_materials_sheen), and a clear
-// coat above it (KHR_materials_clearcoat). Formulas of the extensions:
+// bsdf_layered.h -- layers on a glTF material: sheen (KHR_materials_sheen), and a clear coat above it
+// (KHR_materials_clearcoat). Formulas of the extensions:
 //   sheen  = colour D V + base min(1 - m E(wo), 1 - m E(wi)),   m = largest of colour
 //   coated = mix(sheen, specular_brdf, factor F(|Nc.V|)),       F = 0.04 + 0.96 s
-// D, V and E of charlie.h. Sheen over the base is reciprocal. The coat is not: as the
-// extension wants it, only the angle of wo decides how much of either is seen; so energy
-// is kept for light traced from the eye, whatever the base.
+// with D, V and E of charlie.h. Sheen over the base is reciprocal. The coat is not: following the extension, the mix
+// depends only on wo, so paths from the camera conserve energy for any base.
 #pragma once
 #include <optional>
 
@@ -15,20 +14,20 @@ namespace dg {
 
 inline constexpr float kCoatF0 = 0.04f, kCoatIor = 1.5f;
 
-/// Share that a clear coat of weight `factor` takes of the light seen from there.
+/// Share of a clear coat of weight `factor` in the light reflected toward a direction.
 inline float coat_share(float factor, float cos_o) {
     return factor * (kCoatF0 + (1 - kCoatF0) * schlick(std::abs(cos_o)));
 }
 
-/// The coat at one point.
+/// The coat at a hit.
 struct Coat {
-    Vec3f ns;  // its own shading normal
+    Vec3f ns;  // shading normal of the coat
     float factor = 0, alpha = 0;
     bool smooth() const { return alpha < kSmoothAlpha; }
     Evaluation evaluate_with_pdf(Vec3f ng, Vec3f wo, Vec3f wi) const;
 };
 
-/// The sheen at one point; `largest` is the m of the formula.
+/// The sheen at a hit; `largest` is m in the formula.
 struct Sheen {
     Spectrum color{0.f};
     float largest = 0, alpha = 1;
@@ -37,9 +36,9 @@ struct Sheen {
     Sheen() = default;
     Sheen(Spectrum color, float largest, float roughness);
     bool present() const { return largest > 0; }
-    /// f |cos wi|, `above` the shading normal on the side of both.
+    /// f |cos wi|; `ns`: shading normal on the side of both directions.
     Spectrum evaluate(Vec3f ns, Vec3f wo, Vec3f wi, float cos_o, float cos_i) const;
-    /// Share of light that the base keeps between these two cosines.
+    /// Factor on the base for these two cosines.
     float passed(float cos_o, float cos_i) const;
     float albedo(float cos_o) const { return std::min(1.f, row.at(cos_o)); }
 };
@@ -66,15 +65,14 @@ struct LayeredBsdf {
     }
     Interior interior() const { return base.interior(); }
     bool bounds_volume() const { return base.bounds_volume(); }
-    /// Coat and sheen take their share of what goes straight through.
+    /// The base's transmittance, reduced by coat and sheen.
     Spectrum straight_transmittance(Vec3f wo) const;
     float reversed(Vec3f wo, Vec3f wi) const;
-    /// Sheen is diffuse, a coat is not.
+    /// Sheen counts as diffuse, the coat as glossy.
     float diffuse_share(Vec3f wo, Vec3f wi) const;
 
   private:
-    /// Shares of the light seen from wo: what the coat takes, and the chances to follow it, the
-    /// sheen and the base.
+    /// Share of the coat for wo, and the sampling probabilities of coat, sheen and base.
     struct Shares {
         float coat, coat_probability, sheen_probability, base_probability;
     };

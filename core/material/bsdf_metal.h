@@ -1,5 +1,4 @@
-// bsdf_metal.h -- facets of a metal: round or stretched ones, which reflect by their index of refraction or the same
-// at every angle.
+// bsdf_metal.h -- a metal with isotropic or anisotropic facets, and Fresnel or constant reflectance.
 #pragma once
 #include <optional>
 
@@ -8,10 +7,10 @@
 
 namespace dg {
 
-/// Share of light that a facet of a metal reflects.
+/// Reflectance of a facet of a metal.
 struct MetalReflectance {
     Spectrum factor{1.f};
-    bool fresnel = false;   // by the index; else the factor alone
+    bool fresnel = false;   // Fresnel reflectance times the factor; false: the factor alone
     Spectrum eta{1.f}, k{0.f};
 
     Spectrum at(float cos_h) const { return fresnel ? factor * fresnel_conductor(cos_h, eta, k) : factor; }
@@ -22,7 +21,7 @@ struct MetalBsdf {
     MetalReflectance reflectance;
     Facets facets;
 
-    static constexpr bool kOneLobe = true;   // sample() has no use for u_lobe
+    static constexpr bool kOneLobe = true;   // sample() ignores u_lobe
     bool is_specular() const { return facets.smooth; }
     float diffuse_share(Vec3f, Vec3f) const { return 0; }
 

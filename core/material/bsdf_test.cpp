@@ -1,4 +1,4 @@
-// bsdf_test.cpp -- every kind of BSDF through the checks of bsdf_check.h.
+// bsdf_test.cpp -- applies the checks of bsdf_check.h to every kind of BSDF.
 #include "material/bsdf.h"
 
 #include <doctest/doctest.h>
@@ -16,16 +16,16 @@ using namespace check;
 struct Case {
     std::string name;
     Bsdf bsdf;
-    float ior = 1;           // of a refracting interface
+    float ior = 1;           // index of a refracting interface
     bool lossless = false;   // albedo is exactly 1 from either side
-    bool two_sided = false;  // also looked at from behind
+    bool two_sided = false;  // also tested from behind
     bool disperses = false;  // the hero's lane has four times its light
     bool reciprocal = true;
 };
 
-/// Energy that a surface may gain, as tables of albedos are interpolated.
+/// Tolerance for energy gain, since albedo tables are interpolated.
 double rounding_of(const Case& c) {
-    if (c.name == "Beckmann even pane 0.150000") return 0.035;  // two roughnesses, at grazing angles
+    if (c.name == "Beckmann even pane 0.150000") return 0.035;  // anisotropic, at grazing angles
     if (std::holds_alternative<GlassBsdf>(c.bsdf)) return 0.025;
     return std::holds_alternative<CoatedBsdf>(c.bsdf) ? 0.02 : 0.003;
 }
@@ -33,7 +33,7 @@ double rounding_of(const Case& c) {
 const Vec3f kNg = normalize(Vec3f{0.3f, -0.5f, 0.8f});
 const Spectrum kColor{0.2f, 0.5f, 0.8f, 1.f};
 
-/// Indices of a strongly dispersive glass; the hero's is the first.
+/// Indices of a strongly dispersive glass; the first is the hero's.
 const Spectrum kIndices{1.5f, 1.62f, 1.55f, 1.45f};
 
 DielectricBsdf prism(Vec3f ns, float alpha) {
@@ -77,7 +77,7 @@ void add_gltf(std::vector<Case>& cases, Vec3f ns, bool straight) {
     const auto add = [&](const std::string& name, const GltfSurface& s,
                          bool lossless = false) {
         const bool clear = s.transmission + s.diffuse_transmission > 0;
-        // Index 0 is a special case of KHR_materials_ior and bends as good as nothing.
+        // Index 0 is a special case of KHR_materials_ior with almost no refraction.
         const float ior = !s.volume ? 1 : s.ior > 0 ? s.ior : 1 + kSmoothAlpha;
         // Diffuse on both sides of a change of index: see bsdf_gltf.h.
         const bool reciprocal = !s.volume || s.diffuse_transmission == 0;
@@ -126,7 +126,7 @@ void add_gltf(std::vector<Case>& cases, Vec3f ns, bool straight) {
     add("gltf mirror", clear, true);
 }
 
-/// Brushed along a direction that is neither x nor y of the tests' frames.
+/// Anisotropic along a direction that is neither x nor y of the tests' frames.
 Vec3f brushed_along(Vec3f n) {
     const Vec3f t{0.7f, 0.6f, 0.2f};
     return normalize(t - n * dot(t, n));
@@ -209,7 +209,7 @@ void add_layered(std::vector<Case>& cases, Vec3f ns, bool straight) {
 
 Facets facets(Vec3f ns, float alpha_u, float alpha_v) { return {ns, brushed_along(ns), alpha_u, alpha_v}; }
 
-/// Gold or so, at four wavelengths.
+/// A metal similar to gold, at four wavelengths.
 const MetalReflectance kGold{kColor, true, {0.2f, 0.4f, 1.3f, 1.5f}, {3.5f, 2.4f, 1.9f, 1.8f}};
 
 GlassBsdf glass(Vec3f ns, const Facets& f) {
@@ -290,7 +290,7 @@ void add_beckmann(std::vector<Case>& cases, Vec3f ns) {
 }
 
 std::vector<Case> all_cases(bool straight) {
-    // A shading normal some 20 degrees off the geometric one.
+    // A shading normal about 20 degrees off the geometric normal.
     const Vec3f ns = straight ? kNg : normalize(kNg + Vec3f{0.2f, 0.3f, 0.1f});
     std::vector<Case> cases;
     add_plain(cases, ns, straight);
@@ -305,7 +305,7 @@ std::vector<Case> all_cases(bool straight) {
     return cases;
 }
 
-/// Directions at three heights, from both sides where that makes a difference.
+/// Directions at three elevations, from both sides for two-sided surfaces.
 std::vector<Setting> settings(const Case& c, bool straight) {
     std::vector<Setting> list;
     const Frame frame = Frame::from_normal(kNg);
@@ -330,8 +330,7 @@ void for_all(bool straight, Check check) {
     }
 }
 
-/// Faults: a density 2 % too large, and a cosine that is forgotten in sample() or
-/// evaluate().
+/// Planted faults: a density 2 % too large, and a missing cosine in sample() or evaluate().
 template <typename B>
 struct WrongPdf : B {
     Evaluation evaluate_with_pdf(Vec3f wo, Vec3f wi) const {

@@ -1,4 +1,4 @@
-// bsdf_translucent.h -- Lambert on both sides: light is reflected by the cosine, or leaves by it on the other side.
+// bsdf_translucent.h -- two-sided Lambertian reflection and Lambertian transmission.
 #pragma once
 #include <optional>
 

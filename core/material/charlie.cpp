@@ -6,7 +6,7 @@ namespace {
 
 constexpr int kRings = 48, kTurns = 24;
 
-/// Roughness of a row, uniform between the least and 1.
+/// Roughness of a table row, uniform between the smallest roughness and 1.
 float roughness_of(int row) {
     constexpr float kStep = (1 - kLeastSheenRoughness) / (CharlieAlbedo::kRoughnesses - 1);
     return kLeastSheenRoughness + static_cast<float>(row) * kStep;
@@ -24,7 +24,7 @@ float fit(float x, float alpha) {
     return a / (1 + b * std::pow(x, c)) + d * x + e;
 }
 
-/// Integral of f cos over the hemisphere, midpoint rule in sqrt(cos) and half a turn.
+/// Integral of f cos over the hemisphere, by the midpoint rule in sqrt(cos) and in azimuth over half a turn.
 float integrate(float cos_o, float alpha, const float (&lambda)[kRings]) {
     const Vec3f n{0, 0, 1}, wo{std::sqrt(std::max(0.f, 1 - cos_o * cos_o)), 0, cos_o};
     const float lambda_o = charlie_lambda(cos_o, alpha);

@@ -1,11 +1,9 @@
-// charlie.h -- the sheen of cloth: fibres that stand about the normal. Distribution and
-// visibility of Estevez and Kulla 2017, Production Friendly Microfacet Sheen BRDF, as
-// KHR_materials_sheen has them, with alpha = roughness^2:
+// charlie.h -- the sheen of cloth, with fibres around the normal. Distribution and visibility of Estevez and Kulla
+// 2017, Production Friendly Microfacet Sheen BRDF, as in KHR_materials_sheen, with alpha = roughness^2:
 //   D = (2 + 1 / alpha) sin(h)^(1 / alpha) / (2 pi)
 //   V = 1 / ((1 + Lambda(wo) + Lambda(wi)) 4 cos_o cos_i)
-// Their fitted Lambda lets narrow lobes return up to four times the light at grazing
-// angles; so f is divided by the larger of both directions' albedos where that exceeds 1,
-// which is reciprocal and loses nothing elsewhere.
+// With the fitted Lambda, narrow lobes gain energy at grazing angles, up to a factor of four. So f is divided by the
+// larger of both directions' albedos if it exceeds 1, which is reciprocal and loses no energy elsewhere.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -14,7 +12,7 @@
 
 namespace dg {
 
-/// Below this roughness the lobe is too narrow for its table and reflects next to nothing.
+/// Smallest roughness: narrower lobes are too narrow for the table, and reflect almost nothing.
 inline constexpr float kLeastSheenRoughness = 0.07f;
 
 inline float charlie_alpha(float roughness) {
@@ -31,7 +29,7 @@ inline float charlie_d(Vec3f n, Vec3f h, float alpha) {
 /// Lambda of the masking (Estevez and Kulla, section 3).
 float charlie_lambda(float cos_angle, float alpha);
 
-/// Directional albedo of f = D V, before it is held to 1.
+/// Directional albedo of f = D V, before the limit of 1.
 class CharlieAlbedo {
   public:
     static constexpr int kAngles = 32, kRoughnesses = 32;  // uniform in sqrt(cos)

@@ -83,7 +83,7 @@ TEST_CASE("the base keeps min(1 - m E(wo), 1 - m E(wi))") {
     CHECK(sheen.passed(0.3f, 0.7f) ==
           doctest::Approx(std::min(1 - 0.5 * eo, 1 - 0.5 * ei)).epsilon(0.01));
     CHECK(sheen.passed(0.3f, 0.7f) == sheen.passed(0.7f, 0.3f));
-    CHECK(Sheen(1.f, 1, 0.07f).passed(0.01f, 0.5f) == 0);  // E is held to 1
+    CHECK(Sheen(1.f, 1, 0.07f).passed(0.01f, 0.5f) == 0);  // E is limited to 1
 }
 
 }  // namespace dg

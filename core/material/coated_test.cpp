@@ -1,4 +1,4 @@
-// coated_test.cpp -- coats over diffuse surfaces and metals: energy, saturation, and closed forms of smooth ones.
+// coated_test.cpp -- coats over diffuse surfaces and metals: energy, saturation, and closed forms of smooth coats.
 #include "material/bsdf_coated.h"
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ CoatedBsdf plastic(Spectrum diffuse, float alpha, float ior = 1.5f, bool linear 
     return {kUp, kUp, coat, {.diffuse = diffuse}};
 }
 
-/// Plastic that loses what the facets of its coat block.
+/// Plastic without compensation of light blocked by the coat's facets.
 CoatedBsdf lossy(Spectrum diffuse, float alpha, float ior, bool linear = false) {
     ClearCoat coat{ior, {kUp, {1, 0, 0}, alpha, alpha}, 1.f, 0.f, linear, false};
     return {kUp, kUp, coat, {.diffuse = diffuse}};
@@ -33,7 +33,7 @@ check::Albedo seen(const CoatedBsdf& b, float z) {
     return check::albedo_by_quadrature(b, {Frame::from_normal(kUp), at_cosine(z), 1});
 }
 
-/// Light that is followed between a smooth coat and a Lambert base, one ray after the other.
+/// Reference for a smooth coat over a Lambertian base: traces rays between both.
 double by_following(float diffuse, float z, float n, double depth, std::uint64_t seed) {
     constexpr int kCount = 400000;
     check::Random random{seed};
@@ -43,7 +43,7 @@ double by_following(float diffuse, float z, float n, double depth, std::uint64_t
         double left = (1 - fresnel_dielectric(z, n)) * down;
         while (left > 1e-5) {
             left *= diffuse;
-            const float c = std::sqrt(random.next() * (1 - 1e-6f) + 1e-6f);   // by the cosine
+            const float c = std::sqrt(random.next() * (1 - 1e-6f) + 1e-6f);   // cosine distribution
             left *= std::exp(-depth / c);
             const double r = fresnel_dielectric(c, 1 / n);
             sum += left * (1 - r);
@@ -53,7 +53,8 @@ double by_following(float diffuse, float z, float n, double depth, std::uint64_t
     return sum / kCount;
 }
 
-/// The same below facets that reflect, let through or block; of all that meets them, by glass of one bounce.
+/// Reference for a rough coat over a Lambertian base, with facets that reflect, transmit or block, by single-scattering
+/// glass.
 double by_facets(float diffuse, float alpha, float z, float n, std::uint64_t seed) {
     constexpr int kCount = 300000;
     GlassBsdf interface{kUp, kUp, 1.f, 1.f, n};
@@ -66,14 +67,14 @@ double by_facets(float diffuse, float alpha, float z, float n, std::uint64_t see
             const float u_lobe = random.next();
             const auto s = interface.sample(wo, u_lobe, random.next_2d());
             if (!s) break;
-            const bool through = (s->wi.z > 0) != (wo.z > 0);   // radiance there is 1 / eta^2 of what goes
+            const bool through = (s->wi.z > 0) != (wo.z > 0);   // radiance is scaled by 1 / eta^2
             left *= double(s->weight[0]) * (!through ? 1 : wo.z > 0 ? double(n) * n : 1 / (double(n) * n));
             if (s->wi.z > 0) {
                 sum += left;
                 break;
             }
             left *= diffuse;
-            const float c = std::sqrt(random.next() * (1 - 1e-6f) + 1e-6f);   // up from the base, by the cosine
+            const float c = std::sqrt(random.next() * (1 - 1e-6f) + 1e-6f);   // up from the base, cosine distribution
             wo = {std::sqrt(1 - c * c), 0, -c};
         }
     }
@@ -91,8 +92,8 @@ TEST_CASE("without compensation plastic loses what light does that its facets bl
                 CAPTURE(z);
                 const double followed = by_facets(0.8f, alpha, z, n, 21);
                 CHECK(seen(lossy(0.8f, alpha, n), z).value[0] == doctest::Approx(followed).epsilon(0.012));
-                CHECK(seen(lossy(0.8f, alpha, n, true), z).value[0] > followed);   // as a white base is lit
-                if (alpha > 0.2f)   // Fault: nothing is lost.
+                CHECK(seen(lossy(0.8f, alpha, n, true), z).value[0] > followed);   // light does not depend on the base
+                if (alpha > 0.2f)   // planted fault: no loss
                     CHECK(seen(plastic(0.8f, alpha, n), z).value[0] > 1.03 * followed);
             }
         }
@@ -126,7 +127,7 @@ TEST_CASE("plastic is what light does that is followed between coat and base") {
             CHECK(seen(plastic(p, 0), z).value[0] == doctest::Approx(by_following(p, z, 1.5f, 0, 7)).epsilon(3e-3));
             CHECK(seen(plastic(p, 0, 1.5f, false, 0.3f), z).value[0] ==
                   doctest::Approx(by_following(p, z, 1.5f, 0.3, 9)).epsilon(5e-3));
-            // Faults: the coat's inside reflects nothing back; its light takes on no colour.
+            // Planted faults: no reflection at the coat's inside; no colour shift by inter-reflections.
             CHECK(seen(plastic(p, 0), z).value[0] != doctest::Approx(by_following(p, z, 1.5f, 0.1, 7)).epsilon(3e-3));
             CHECK(seen(plastic(p, 0, 1.5f, true), z).value[0] !=
                   doctest::Approx(by_following(p, z, 1.5f, 0, 7)).epsilon(3e-3));
@@ -150,7 +151,7 @@ TEST_CASE("a smooth coat on a mirror has the closed form of two interfaces") {
         const Spectrum rough = coated_metal({}, 0.2f, 0).evaluate(at_cosine(low), at_cosine(low));
         CHECK(std::isfinite(rough[0]));
     }
-    // A perfect one under a coat that takes nothing is a perfect one.
+    // A lossless metal under a lossless coat is lossless.
     CHECK(coated_metal({}, 0, 0).sample(at_cosine(z), 0.4f, {0.5f, 0.5f})->weight[0] == doctest::Approx(1));
     const auto dim = coated_metal({}, 0, 0, 0.5f).sample(at_cosine(z), 0.4f, {0.5f, 0.5f});
     const float way = std::exp(-1 / inside);
@@ -166,7 +167,7 @@ TEST_CASE("white metals under a coat return what their facets let pass, and no m
                 CAPTURE(z);
                 const double a = seen(coated_metal({}, alpha, coat), z).value[0];
                 CHECK(a < (coat == 0 ? 1.005 : 1.02));
-                CHECK(a > (alpha < 0.1f ? 0.97 : alpha < 0.3f ? 0.84 : 0.6));   // their facets block the rest
+                CHECK(a > (alpha < 0.1f ? 0.97 : alpha < 0.3f ? 0.84 : 0.6));   // facets block the rest
             }
     CHECK(seen(coated_metal({}, 0.03f, 0), 0.9f).value[0] == doctest::Approx(1).epsilon(0.01));
 }

@@ -1,7 +1,6 @@
-// dispersive.h -- an index of refraction that depends on the wavelength. Light that such an
-// interface bends goes another way at each wavelength, so the hero alone is followed from
-// there on, for all four (hero_alone()); light that it reflects stays together, and each
-// wavelength has a reflectance of its own.
+// dispersive.h -- wavelength-dependent indices of refraction. A dispersive interface refracts each wavelength in a
+// different direction, so only the hero is followed further, with the weight of all four (hero_alone()). Reflection
+// keeps all wavelengths, each with a separate reflectance.
 #pragma once
 #include <algorithm>
 
@@ -12,8 +11,8 @@ namespace dg {
 
 /// Index at each wavelength (nm) of a glass of index `ior` at 587.6 nm and of the Abbe
 /// number V = 20 / dispersion: Cauchy's A + B / nm^2 through (n_F - n_C) = (n_d - 1) / V.
-/// Source: KHR_materials_dispersion, "Overview"; an index is at least 1 there. The upper
-/// bound is where a float still refracts.
+/// Source: KHR_materials_dispersion, "Overview", with indices of at least 1. The upper bound is the limit for
+/// refraction in float.
 inline Spectrum dispersed_ior(float ior, float dispersion, Spectrum nm) {
     Spectrum n;
     for (int k = 0; k < kWavelengths; ++k) {
@@ -23,7 +22,7 @@ inline Spectrum dispersed_ior(float ior, float dispersion, Spectrum nm) {
     return n;
 }
 
-/// Fresnel's reflectance at each wavelength, from the outside (front) or the inside.
+/// Fresnel reflectance at each wavelength, from the outside (`front`) or the inside.
 inline Spectrum fresnel_dielectric(float cos_i, Spectrum ior, bool front) {
     Spectrum r;
     for (int k = 0; k < kWavelengths; ++k)

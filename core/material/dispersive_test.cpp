@@ -1,5 +1,4 @@
-// dispersive_test.cpp -- glass that bends each wavelength its own way, held against
-// Cauchy's, Snell's and Fresnel's formulas in double.
+// dispersive_test.cpp -- dispersive glass, compared with Cauchy's, Snell's and Fresnel's formulas in double.
 #include "material/dispersive.h"
 
 #include <doctest/doctest.h>
@@ -51,7 +50,7 @@ SurfaceHit hit(Vec3f ng, Vec3f wo) {
     return h;
 }
 
-/// Light that leaves a smooth interface by transmission.
+/// Samples transmission at a smooth interface.
 BsdfSample bent(const Material& m, Vec3f ng, Vec3f wo, const Wavelengths& wl) {
     SurfaceHit h = hit(ng, wo);
     const auto s = sample(shade(m, {}, h, wl), wo, 0.99999f, {0.5f, 0.5f});
@@ -104,7 +103,7 @@ TEST_CASE("a prism deviates each hero as Snell's law does for its own index") {
 TEST_CASE("each wavelength keeps its own reflectance, up to total reflection") {
     const Wavelengths wl = Wavelengths::sample(0.1f);
     for (const Material& m : {glass(1.585f), gltf_glass(1.585f)}) {
-        // From the front, and from inside where some are totally reflected and others not.
+        // From the front, and from inside where only some wavelengths are totally reflected.
         for (const double angle : {20.0, 75.0, -10.0, -38.6, -39.0, -39.4}) {
             const float c = float(std::cos(angle * kPiD / 180));
             const float s = float(std::sin(angle * kPiD / 180));
@@ -127,7 +126,7 @@ TEST_CASE("over the four possible heroes no wavelength gains or loses light") {
         for (const float slant : {0.3f, -0.9f}) {
             const Vec3f wo = normalize(Vec3f{1, 0.2f, slant});
             const auto total = [&](const Material& m) {
-                double sum = 0;  // of one wavelength, as lane k of the path that it leads next
+                double sum = 0;  // of wavelength k over all heroes
                 for (int k = 0; k < kWavelengths; ++k) {
                     Wavelengths wl = Wavelengths::sample(std::fmod(u + k * 0.25f, 1.f));
                     const int lane = (kWavelengths - k) % kWavelengths;

@@ -1,4 +1,4 @@
-// facets.h -- facets of two roughnesses about a normal, as materials other than glTF's have them: GGX, or Beckmann's.
+// facets.h -- anisotropic facets around a normal, GGX or Beckmann, for materials other than glTF's.
 #pragma once
 #include <cstdint>
 
@@ -10,12 +10,12 @@ namespace dg {
 enum class Distribution : std::uint8_t { ggx, beckmann };
 
 struct Facets {
-    StretchedGgx ggx;   // about the shading normal; the same numbers are those of Beckmann's
+    StretchedGgx ggx;   // around the shading normal; also holds the parameters of Beckmann facets
     bool smooth = true;
     Distribution distribution = Distribution::ggx;
 
     Facets() = default;
-    /// `tangent`: unit, across the normal, where alpha_u counts.
+    /// `tangent`: unit, perpendicular to the normal, direction of alpha_u.
     Facets(Vec3f normal, Vec3f tangent, float alpha_u, float alpha_v, Distribution distribution = Distribution::ggx)
         : ggx{tangent, cross(normal, tangent), std::max(alpha_u, kSmoothAlpha), std::max(alpha_v, kSmoothAlpha)},
           smooth(alpha_u < kSmoothAlpha && alpha_v < kSmoothAlpha), distribution(distribution) {}
@@ -33,7 +33,7 @@ struct Facets {
         return sample_visible_normal(Frame{ggx.tangent, ggx.bitangent, n}, wo, Vec2f{ggx.alpha_t, ggx.alpha_b}, u);
     }
 
-  private:   // not inlined: GGX would become slower by it
+  private:   // not inlined, which would slow down GGX
     Facet reflecting_beckmann(Vec3f n, Vec3f wo, Vec3f wi, float cos_o, float cos_i) const;
     Facet refracting_beckmann(Vec3f n, Vec3f wo, Vec3f wi, float cos_o, float cos_i, float eta) const;
     Vec3f sample_beckmann(Vec3f n, Vec3f wo, Vec2f u) const;

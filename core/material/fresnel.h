@@ -1,4 +1,4 @@
-// fresnel.h -- reflectance of an interface, exact and Schlick's.
+// fresnel.h -- reflectance of a dielectric interface, exact and by Schlick's approximation.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// fresnel_conductor.h -- reflectance of a metal by its index of refraction.
+// fresnel_conductor.h -- Fresnel reflectance of a metal.
 #pragma once
 #include <cmath>
 
@@ -6,9 +6,9 @@
 
 namespace dg {
 
-/// Unpolarised reflectance at the angle whose cosine is cos_i, from a clear medium to one of the relative
-/// index eta + i k. With n^2 - k^2 - sin^2 = p and sqrt(p^2 + 4 n^2 k^2) = a^2 + b^2, where a + i b is the normal
-/// part of the wave within:
+/// Unpolarised reflectance at the cosine cos_i, from a clear medium to a medium of relative index eta + i k. With
+/// n^2 - k^2 - sin^2 = p and sqrt(p^2 + 4 n^2 k^2) = a^2 + b^2, where a + i b is the normal component of the refracted
+/// wave vector:
 ///   R_s = (a^2 + b^2 - 2 a c + c^2) / (a^2 + b^2 + 2 a c + c^2),
 ///   R_p = R_s (c^2 (a^2 + b^2) - 2 a c s^2 + s^4) / (c^2 (a^2 + b^2) + 2 a c s^2 + s^4).
 /// Source: Born and Wolf, Principles of Optics, 14.2 (7th edition).

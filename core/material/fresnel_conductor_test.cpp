@@ -37,7 +37,7 @@ double largest_difference(Fresnel fresnel) {
 
 TEST_CASE("a metal's reflectance is that of the amplitudes, at all angles") {
     CHECK(largest_difference([](float c) { return fresnel_conductor(c, kEta, kExtinction); }) < 2e-6);
-    // Faults: no extinction, the index the other way round, Schlick's curve.
+    // Planted faults: no extinction, inverse index, Schlick's curve.
     CHECK(largest_difference([](float c) { return fresnel_conductor(c, kEta, 0.f); }) > 0.1);
     CHECK(largest_difference([](float c) { return fresnel_conductor(c, kExtinction, kEta); }) > 0.1);
     CHECK(largest_difference([](float c) {
@@ -60,13 +60,13 @@ TEST_CASE("a rough metal reflects the integral of Fresnel x GGX") {
         const MetalBsdf metal{n, n, {1.f, true, kEta, kExtinction}, {n, {1, 0, 0}, alpha, alpha}};
         for (const float z : {0.95f, 0.6f, 0.3f}) {
             const Vec3f wo{std::sqrt(1 - z * z), 0, z};
-            // In double, over the half vector's sphere of slopes: D G2 F / (4 cos_o cos_i) cos_i dw.
+            // Reference in double, integrated over half vectors: D G2 F / (4 cos_o cos_i) cos_i dw.
             double sum[kWavelengths] = {};
             constexpr int kRings = 600, kTurns = 200;
             for (int i = 0; i < kRings; ++i) {
                 const double theta = 0.5 * kPiD * (i + 0.5) / kRings, st = std::sin(theta), ct = std::cos(theta);
                 for (int j = 0; j < kTurns; ++j) {
-                    const double phi = kPiD * (j + 0.5) / kTurns;   // half a circle, the other half mirrors it
+                    const double phi = kPiD * (j + 0.5) / kTurns;   // half a circle; the other half is symmetric
                     const Vec3d h{st * std::cos(phi), st * std::sin(phi), ct}, o = to_double(wo);
                     const double oh = dot(o, h);
                     const Vec3d i_dir = h * (2 * oh) - o;
@@ -83,7 +83,7 @@ TEST_CASE("a rough metal reflects the integral of Fresnel x GGX") {
             const check::Albedo a = check::albedo_by_sampling(metal, {Frame::from_normal(n), wo, 1}, 40000, 3);
             for (int k = 0; k < kWavelengths; ++k) {
                 CHECK(std::abs(a.value[k] - sum[k]) < 4.5 * a.error[k] + 1e-3 * sum[k]);
-                CHECK(std::abs(a.value[k] - 0.97 * sum[k]) > 4.5 * a.error[k]);   // a fault of 3 % is seen
+                CHECK(std::abs(a.value[k] - 0.97 * sum[k]) > 4.5 * a.error[k]);   // detects an error of 3 %
             }
         }
     }

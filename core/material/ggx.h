@@ -2,7 +2,7 @@
 // shadowing. Sources: Walter et al. 2007, Microfacet Models for Refraction through Rough
 // Surfaces (W07); Heitz 2014, Understanding the Masking-Shadowing Function, JCGT 3(2)
 // (H14); Dupuy and Benyoub 2023, Sampling Visible GGX Normals with Spherical Caps (DB23).
-// Everything is written with dot products: a frame is built only to sample.
+// Formulas use dot products; a frame is built only for sampling.
 #pragma once
 #include <cmath>
 
@@ -10,9 +10,8 @@
 
 namespace dg {
 
-/// (cos, sin) of 2 pi u for u in [0,1], from Taylor's series of the half angle; error <
-/// 3e-7. No branch that chance would mispredict, and the same bits whatever the C
-/// library.
+/// (cos, sin) of 2 pi u for u in [0,1], from Taylor series of the half angle; error < 3e-7. Free of unpredictable
+/// branches, and bit-identical with any C library.
 inline Vec2f unit_circle(float u) {
     const float t = kPi * (u - 0.5f), t2 = t * t;
     const float s =
@@ -27,18 +26,18 @@ inline Vec2f unit_circle(float u) {
     return {(s - c) * (s + c), -2 * s * c};
 }
 
-/// Cosine-weighted direction about n; density cos / pi.
+/// Samples a cosine-weighted direction around n; density cos / pi.
 inline Vec3f sample_cosine(Vec3f n, Vec2f u) {
     const Vec2f d = unit_circle(u.x) * std::sqrt(u.y);
     return Frame::from_normal(n).to_world({d.x, d.y, std::sqrt(std::max(0.f, 1 - u.y))});
 }
 
-/// cos * sqrt(1 + alpha^2 tan^2) of H14's Lambda = (that / cos - 1) / 2.
+/// cos * sqrt(1 + alpha^2 tan^2). H14's Lambda is (ggx_slope / cos - 1) / 2.
 inline float ggx_slope(float alpha2, float c) {
     return std::sqrt(alpha2 + (1 - alpha2) * c * c);
 }
 
-/// Visible normal of GGX facets (world frame) seen from wo, which is above frame.z, with
+/// Samples a visible normal of GGX facets (world frame) from wo, which is above frame.z, with
 /// the roughness alpha.x along frame.x and alpha.y along frame.y (DB23).
 inline Vec3f sample_visible_normal(const Frame& frame, Vec3f wo, Vec2f alpha, Vec2f u) {
     const Vec3f v = frame.to_local(wo);
@@ -54,30 +53,30 @@ inline Vec3f sample_visible_normal(Vec3f n, Vec3f wo, float alpha, Vec2f u) {
     return sample_visible_normal(Frame::from_normal(n), wo, Vec2f{alpha, alpha}, u);
 }
 
-/// One facet that joins two directions, without its Fresnel factor.
+/// A facet that connects two directions, without its Fresnel factor.
 struct Facet {
     float cos_h = 0;  // between wo and the facet's normal
     float f_cos = 0;  // f * |cos wi|
-    float pdf = 0;    // of wi when the facet is a visible one of wo
+    float pdf = 0;    // density of wi for visible-normal sampling from wo
 };
 
-/// D of the unnormalised half vector h (W07 eq. 33). |n x h| keeps full precision where 1
-/// - cos^2 would cancel: narrow lobes depend on it.
+/// D of the unnormalised half vector h (W07 eq. 33). Narrow lobes need |n x h|, since 1 - cos^2 suffers from
+/// cancellation.
 inline float ggx_d(Vec3f n, Vec3f h, float h2, float alpha2) {
     const float cos_h = dot(n, h);
     const float d = (alpha2 * cos_h * cos_h + length_squared(cross(n, h))) / h2;
     return alpha2 / (kPi * d * d);
 }
 
-/// Facets that are as rough in every direction about n.
+/// Isotropic facets.
 struct RoundGgx {
     float alpha2;
     float d(Vec3f n, Vec3f h, float h2) const { return ggx_d(n, h, h2, alpha2); }
     float slope(Vec3f /*w*/, float cos_w) const { return ggx_slope(alpha2, cos_w); }
 };
 
-/// Facets with one roughness along `tangent` and another across it. Sources: Walter et
-/// al. 2007 in the stretched form of H14, section 5.4 and eq. 86.
+/// Anisotropic facets with separate roughness along `tangent` and across it. Sources: Walter et al. 2007 in the
+/// stretched form of H14, section 5.4 and eq. 86.
 struct StretchedGgx {
     Vec3f tangent, bitangent;
     float alpha_t, alpha_b;
@@ -91,7 +90,7 @@ struct StretchedGgx {
         const float t = alpha_t * dot(tangent, w), b = alpha_b * dot(bitangent, w);
         return std::sqrt(t * t + b * b + cos_w * cos_w);
     }
-    /// alpha of the round facets that mask w alike (H14, section 5.4).
+    /// alpha of isotropic facets with the same masking of w (H14, section 5.4).
     float alpha_toward(Vec3f w) const {
         const float t = dot(tangent, w), b = dot(bitangent, w), r2 = t * t + b * b;
         if (!(r2 > 0)) return std::sqrt(alpha_t * alpha_b);
@@ -113,8 +112,7 @@ Facet reflecting_facet(Vec3f n, Vec3f wo, Vec3f wi, float cos_o, float cos_i,
 }
 
 /// Refraction from wo (above n) to wi (below), eta = index at wi / index at wo (W07 eq.
-/// 16, 17, 21). Radiance is transported: f carries 1 / eta^2. Empty when no facet joins
-/// the two.
+/// 16, 17, 21). Transports radiance: f carries 1 / eta^2. Empty if no facet connects the two.
 template <typename Ggx>
 Facet refracting_facet(Vec3f n, Vec3f wo, Vec3f wi, float cos_o, float cos_i,
                        const Ggx& ggx, float eta) {
@@ -138,7 +136,7 @@ inline Vec3f reflect(Vec3f wo, Vec3f n) {
     return n * (2 * dot(wo, n)) - wo;
 }
 
-/// wo is above n and not totally reflected; eta as above.
+/// Refracts wo, which is above n and not totally reflected; eta = index beyond / index at wo.
 inline Vec3f refract(Vec3f wo, Vec3f n, float eta) {
     const float cos_o = dot(wo, n);
     const float cos_t = std::sqrt(std::max(0.f, 1 - (1 - cos_o * cos_o) / (eta * eta)));

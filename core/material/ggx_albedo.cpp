@@ -6,8 +6,7 @@
 namespace dg {
 namespace {
 
-/// Midpoint rule in the two random numbers of the sampler; half a circle, the other half
-/// mirrors it.
+/// Midpoint rule in the two random numbers of the sampler, over half a circle; the other half is symmetric.
 LobeAlbedo integrate(float cos_o, float alpha) {
     constexpr int kAzimuths = 12, kCaps = 48;
     const Vec3f n{0, 0, 1}, wo{std::sqrt(std::max(0.f, 1 - cos_o * cos_o)), 0, cos_o};
@@ -35,8 +34,8 @@ LobeAlbedo integrate(float cos_o, float alpha) {
 
 }  // namespace
 
-// With x = sqrt(cos) that is 4 x^3 dx, of degree 4 in each cell, for which three Gauss points
-// are exact.
+// With x = sqrt(cos) the weight is 4 x^3 dx. The integrand has degree 4 in each cell, for which three Gauss points are
+// exact.
 LobeAlbedo cosine_mean(const LobeAlbedo* values) {
     constexpr float kNode = 0.77459667f, kOuter = 5 / 18.f, kInner = 8 / 18.f;
     LobeAlbedo sum(0.f);

@@ -1,8 +1,7 @@
-// ggx_albedo.h -- how much light a GGX lobe reflects, tabulated over angle and roughness.
-// With Schlick's F = F0 (1 - s) + F90 s the albedo is linear in F0 and F90, so two tables
-// serve every interface: A = integral of (1 - s), B = integral of s over the lobe. A
-// third, b, is the mean of s over the visible facets alone, so that F' = F0 (1 - b) + F90
-// b is the mean reflectance of a facet.
+// ggx_albedo.h -- directional albedo of a GGX lobe, tabulated over angle and roughness. With Schlick's
+// F = F0 (1 - s) + F90 s the albedo is linear in F0 and F90, so two tables serve every interface: A = integral of (1 -
+// s), B = integral of s over the lobe. A third, b, is the mean of s over the visible facets, so that F' = F0 (1 - b) +
+// F90 b is the mean reflectance of a facet.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -23,11 +22,11 @@ class GgxAlbedo {
     /// Computed on the first call.
     static const GgxAlbedo& instance();
 
-    /// One roughness of the table; the smooth one is Schlick's curve itself.
+    /// Interpolated table row of a roughness; smooth surfaces use Schlick's curve itself.
     struct Row {
         const LobeAlbedo *low = nullptr, *high = nullptr;  // nullptr: smooth
         float blend = 0;
-        LobeAlbedo mean;  // of this very interpolant, weighted by cos
+        LobeAlbedo mean;  // cosine-weighted mean of the interpolant
 
         LobeAlbedo at(float cos_angle) const {
             if (!low) {
@@ -51,7 +50,7 @@ class GgxAlbedo {
     LobeAlbedo mean_[kRoughnesses];
 };
 
-/// Integral of 2 cos dcos over what is interpolated between GgxAlbedo::kAngles values.
+/// Integral of the interpolant of GgxAlbedo::kAngles values over 2 cos dcos.
 LobeAlbedo cosine_mean(const LobeAlbedo* values);
 
 /// Weighted sum of the four lanes.

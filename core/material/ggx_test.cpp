@@ -82,7 +82,7 @@ TEST_CASE("Fresnel: numbers of the textbook") {
           doctest::Approx(0.5 * std::pow(1.25 / 3.25, 2)));
     CHECK(fresnel_dielectric(0, 1.5f) == 1);
     CHECK(fresnel_dielectric(0.7f, 1 / 1.5f) ==
-          1);  // beyond the critical angle, cos 0.745
+          1);  // beyond the critical angle (cosine 0.745)
     CHECK(fresnel_dielectric(0.76f, 1 / 1.5f) < 1);
     CHECK(schlick(0) == 1);
     CHECK(schlick(1) == 0);

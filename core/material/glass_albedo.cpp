@@ -9,7 +9,7 @@ namespace {
 
 GlassLobes to_lobes(LobeAlbedo a) { return {a[0], a[1], a[2], a[3]}; }
 
-/// Round facets about z. Half of the random numbers will do where the other half mirrors it: `u.x` below 0.5.
+/// Isotropic facets around z. By symmetry, random numbers with `u.x` below 0.5 suffice.
 struct Ggx {
     float alpha;
     float slope(float cosine) const { return ggx_slope(alpha * alpha, cosine); }
@@ -23,14 +23,14 @@ struct Beckmann {
     }
 };
 
-/// G2 / G1 of a facet that joins two directions, with heights correlated.
+/// Height-correlated G2 / G1 of a facet that connects two directions.
 float passed(float cos_o, float slope_o, float cos_i, float slope_i) {
     return cos_i * (cos_o + slope_o) / (cos_i * slope_o + cos_o * slope_i);
 }
 
 float curve_of(float exact, float f0) { return f0 < 1 ? std::max(0.f, exact - f0) / (1 - f0) : 0.f; }
 
-/// Light of one facet: what it returns on either side, for eta = index beyond / index here.
+/// Unblocked light of a facet on both sides, for eta = index beyond / index here.
 struct Returned {
     float reflected = 0, facets = 0, transmitted = 0, exact = 1;
 };
@@ -48,7 +48,7 @@ Returned returned(Vec3f wo, Vec3f h, Round round, float eta) {
     return r;
 }
 
-/// Midpoint rule in the two random numbers of the sampler; half a circle, the other half mirrors it.
+/// Midpoint rule in the two random numbers of the sampler, over half a circle; the other half is symmetric.
 constexpr int kAzimuths = 8, kCaps = 48;
 template <typename Round, typename What>
 void for_visible_facets(Vec3f wo, Round round, What what) {
@@ -79,7 +79,7 @@ LobeAlbedo integrate_glass(float cos_o, float alpha, float n) {
             static_cast<float>(curve * scale), static_cast<float>(facets * scale)};
 }
 
-/// A metal of reflectance 1 below a smooth coat: what its facets return, less what leaves through the coat.
+/// A metal of reflectance 1 under a smooth coat: unblocked light of its facets minus light that leaves the coat.
 template <typename Round>
 LobeAlbedo integrate_caught(float cos_o, float alpha, float n) {
     if (alpha == 0) return 0.f;
@@ -118,7 +118,7 @@ const IndexedAlbedo& caught_table(Distribution d) {
     return d == Distribution::ggx ? caught_table<Ggx>() : caught_table<Beckmann>();
 }
 
-/// Duntley's form, for n far enough from 1.
+/// Duntley's closed form, which cancels for n near 1.
 double mean_in_closed_form(double n) {
     const double n2 = n * n, n4 = n2 * n2, plus = n2 + 1, minus = n2 - 1, fourth = n4 - 1;
     return 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +
@@ -129,7 +129,7 @@ double mean_in_closed_form(double n) {
 }  // namespace
 
 float mean_fresnel(float n) {
-    constexpr double kNearest = 1.01;   // below, terms of 1 / (n - 1)^2 cancel
+    constexpr double kNearest = 1.01;   // below, terms of 1 / (n - 1)^2 suffer from cancellation
     if (n >= kNearest) return static_cast<float>(mean_in_closed_form(n));
     return static_cast<float>(mean_in_closed_form(kNearest) * (std::max(n, 1.f) - 1) / (kNearest - 1));
 }
@@ -138,7 +138,7 @@ GlassAlbedo::GlassAlbedo(float n, const Facets& facets)
     : n_(n), facets_(facets.ggx), distribution_(facets.distribution),
       row_(glass_table(distribution_).row(n, facets_.alpha_t)), mean_(to_lobes(row_.mean)) {
     if (facets_.alpha_t == facets_.alpha_b) return;
-    constexpr int kTurns = 8;   // of a quarter
+    constexpr int kTurns = 8;   // in a quarter turn
     LobeAlbedo sum(0.f);
     for (int i = 0; i < kTurns; ++i) {
         const Vec2f d = unit_circle((static_cast<float>(i) + 0.5f) / (4 * kTurns));
@@ -158,7 +158,7 @@ CaughtBelow::CaughtBelow(float n, float alpha, Distribution distribution)
 
 float mean_passed(float alpha, Distribution distribution) {
     if (distribution == Distribution::ggx) return weigh(GgxAlbedo::instance().row(std::sqrt(alpha)).mean, {1, 1, 0, 0});
-    return glass_table<Beckmann>().row(1, alpha).mean[3];   // whatever the index
+    return glass_table<Beckmann>().row(1, alpha).mean[3];   // the same for every index
 }
 
 }  // namespace dg

@@ -1,47 +1,46 @@
-// glass_albedo.h -- how much light rough glass returns by index, angle and roughness, for light that meets one
-// facet alone. What it returns less than 1 facets block; a glass that keeps its energy returns it otherwise
-// (bsdf_glass.h). What the outside reflects is what a rough coat reflects (bsdf_coated.h).
+// glass_albedo.h -- directional albedo of single scattering at rough glass, by index, angle and roughness. The
+// difference to 1 is blocked by facets; glass with compensation scatters it diffusely (bsdf_glass.h). The reflectance
+// of the outside also serves for rough coats (bsdf_coated.h).
 #pragma once
 #include "material/facets.h"
 #include "material/indexed_albedo.h"
 
 namespace dg {
 
-/// Mean of Fresnel's reflectance over diffuse light that arrives at the denser side of an interface of relative index
-/// n >= 1 from the thinner one. From the denser side 1 - mean is 1 / n^2 of that. Source: Duntley 1942, The Optical
-/// Properties of Diffusing Materials, J. Opt. Soc. Am. 32(2), the integral of Fresnel's equations in closed form.
+/// Mean Fresnel reflectance for diffuse light from the thinner side of an interface of relative index n >= 1. For light
+/// from the denser side, 1 - mean is smaller by 1 / n^2. Source: Duntley 1942, The Optical Properties of Diffusing
+/// Materials, J. Opt. Soc. Am. 32(2), the integral of Fresnel's equations in closed form.
 float mean_fresnel(float n);
 
-/// Share of light from a cosine that facets block, for the thinner and the denser side; what the thinner side reflects
-/// with Fresnel's curve from 0 at normal incidence to 1 in place of the reflectance, and with a reflectance of 1.
+/// Albedos at a cosine: shares of light that facets block, for the thinner and the denser side; reflection of the
+/// thinner side with the Fresnel curve rescaled to start at 0, and with a reflectance of 1.
 struct GlassLobes {
     float missing_thin = 0, missing_dense = 0, curve = 0, facets = 1;
 
-    /// Share that the thinner side of an interface of this reflectance at normal incidence reflects.
+    /// Reflectance of the thinner side. `f0`: reflectance at normal incidence.
     float reflected(float f0) const { return f0 * facets + (1 - f0) * curve; }
 };
 
-/// One index and the facets of one interface. Facets of two roughnesses count as round ones by the direction that
-/// they are seen from (StretchedGgx::alpha_toward).
+/// Albedos for an index and facets. Anisotropic facets use the isotropic table with the roughness for the direction
+/// (StretchedGgx::alpha_toward).
 class GlassAlbedo {
   public:
-    /// The first one of all of a distribution fills its table (0.3 s).
+    /// The first use of a distribution computes its table (0.3 s).
     GlassAlbedo(float n, const Facets& facets);
 
     GlassLobes toward(Vec3f w, float cosine) const;
-    const GlassLobes& mean() const { return mean_; }   // weighted by cos
+    const GlassLobes& mean() const { return mean_; }   // cosine-weighted
 
   private:
     float n_;
     StretchedGgx facets_;
     Distribution distribution_;
-    IndexedAlbedo::Row row_;   // of round ones
+    IndexedAlbedo::Row row_;   // for isotropic facets
     GlassLobes mean_;
 };
 
-/// Light that goes through a smooth coat of index n to a white metal and comes back to it inside, where the coat
-/// reflects it totally or in part: its share of what came in, and that of what comes from a cosine; the mean of the
-/// latter. bsdf_coated.h says more.
+/// Light that enters a smooth coat of index n over a white metal and is reflected back to the metal by the inside of
+/// the coat: its share of diffuse light, its share for a cosine, and the mean. See bsdf_coated.h.
 struct CaughtBelow {
     IndexedAlbedo::Row row;
 
@@ -50,7 +49,7 @@ struct CaughtBelow {
     float mean() const { return row.mean[1]; }
 };
 
-/// Mean share of diffuse light that round facets of reflectance 1 let pass.
+/// Mean share of diffuse light that isotropic facets of reflectance 1 do not block.
 float mean_passed(float alpha, Distribution distribution);
 
 }  // namespace dg

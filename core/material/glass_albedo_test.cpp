@@ -1,4 +1,4 @@
-// glass_albedo_test.cpp -- the mean of Fresnel's reflectance, the tables, and glass that keeps its energy.
+// glass_albedo_test.cpp -- mean Fresnel reflectance, the tables, and energy conservation of glass.
 #include "material/glass_albedo.h"
 
 #include <doctest/doctest.h>
@@ -82,7 +82,7 @@ TEST_CASE("rough glass that keeps its energy returns all light, from either side
 TEST_CASE("a pane reflects 2 F / (1 + F), and loses nothing") {
     GlassBsdf pane = rough(1.5f, 0, false, true);
     const double f = fresnel_dielectric(0.6f, 1.5f);
-    double series = f, inside = (1 - f) * (1 - f) * f;   // one bounce after the other
+    double series = f, inside = (1 - f) * (1 - f) * f;   // sum over bounces
     for (int i = 0; i < 50; ++i, inside *= f * f) series += inside;
     const auto r = pane.sample(at_cosine(0.6f), 0, {0.5f, 0.5f});
     REQUIRE(r);

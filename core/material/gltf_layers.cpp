@@ -1,4 +1,4 @@
-// gltf_layers.cpp -- the layers' factors times their textures at a hit.
+// gltf_layers.cpp -- layer parameters at a hit: factors times textures.
 #include "material/material_read.h"
 
 namespace dg {
@@ -54,7 +54,7 @@ void read_anisotropy(const Anisotropy& a, const Textures& textures, const Surfac
     const float c = std::cos(a.rotation), sine = std::sin(a.rotation);
     const Vec2f turned{c * direction.x - sine * direction.y,
                        sine * direction.x + c * direction.y};
-    // The tangent was made for the normal of the mesh; the lobe lies about the mapped one.
+    // The tangent belongs to the normal of the mesh, but the lobe is around the mapped normal.
     const Vec3f bitangent = cross(hit.ns, hit.tangent) * hit.tangent_sign;
     const Vec3f along = hit.tangent * turned.x + bitangent * turned.y;
     const Vec3f t = along - hit.ns * dot(along, hit.ns);

@@ -1,5 +1,4 @@
-// gltf_layers.h -- parameters of the glTF extensions that change the surface's layers,
-// with the channels that their textures are read from.
+// gltf_layers.h -- parameters of the glTF extensions for layers, with the channels of their textures.
 #pragma once
 #include "material/texture.h"
 #include "spectrum/spectrum.h"
@@ -13,7 +12,7 @@ struct ClearcoatLayer {
     float roughness = 0;
     TextureSlot roughness_texture;  // G
     float normal_scale = 1;
-    TextureSlot normal_texture;  // without it the coat follows the mesh, not the base
+    TextureSlot normal_texture;  // none: the coat uses the normal of the mesh, not of the base
     bool used() const { return factor > 0; }
 };
 
@@ -40,7 +39,7 @@ struct Iridescence {
     TextureSlot texture;  // R
     float ior = 1.3f;
     float thickness_min = 100, thickness_max = 400;  // nm
-    TextureSlot thickness_texture;  // G, from min to max; without it: max
+    TextureSlot thickness_texture;  // G, from min to max; none: max
     bool used() const { return factor > 0; }
 };
 

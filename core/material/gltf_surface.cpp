@@ -5,14 +5,13 @@
 namespace dg {
 namespace {
 
-// 8-bit normals are this far from unit length already (twice over, pyramids round again).
+// Deviation of 8-bit normals from unit length, doubled, as pyramids round again.
 constexpr float kNormalRounding = 0.01f;
 
 }  // namespace
 
-/// Variance of the slopes, per axis, under the footprint: the more the normals differ the
-/// shorter is their mean. Source: Toksvig 2005, Mipmapping Normal Maps, Journal of Graphics
-/// Tools.
+/// Variance of the slopes per axis under the footprint, from the length of the mean normal. Source: Toksvig 2005,
+/// Mipmapping Normal Maps, Journal of Graphics Tools.
 float slope_variance(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit) {
     const TextureSlot& slot = m.normal_texture;
     if (!(textures[slot.index].level(slot.turned(hit.footprint[slot.uv_set])) > 0)) return 0;
@@ -30,15 +29,15 @@ Rgb base_color(const GltfMaterial& m, const Textures& textures, const SurfaceHit
 
 namespace {
 
-/// Bumps too small to be seen act as roughness: a Gaussian of slopes of variance v has
-/// alpha^2 = 2 v (Beckmann), and variances add.
+/// Adds unresolved bumps to the roughness: a Gaussian of slopes of variance v has alpha^2 = 2 v (Beckmann), and
+/// variances add.
 float roughened(float roughness, float slope_variance) {
     if (slope_variance == 0) return roughness;
     const float alpha = roughness * roughness;
     return std::sqrt(std::min(1.f, std::sqrt(alpha * alpha + 2 * slope_variance)));
 }
 
-/// Windows stay smooth: bumps turn no light that goes straight on through a sheet.
+/// Windows stay smooth: bumps do not deflect light that passes a thin sheet.
 void read_metallic_roughness(const GltfMaterial& m, const Textures& textures,
                              const SurfaceHit& hit, GltfSurface& s) {
     const bool clear = m.transmission > 0;
@@ -65,14 +64,14 @@ Rgb read_specular(const GltfMaterial& m, const Textures& textures, const Surface
     return m.specular_color * rgb(read(m.specular_color_texture, textures, hit));
 }
 
-/// More than 1 is allowed here: KHR_materials_specular clamps F0 later.
+/// Values above 1 are allowed: KHR_materials_specular clamps F0 later.
 Spectrum specular_spectrum(Rgb c, const Wavelengths& wavelengths) {
     if (c == Rgb{1, 1, 1}) return 1.f;
     return wavelengths.reflectance(c);
 }
 
 void disperse(const GltfMaterial& m, const Wavelengths& wavelengths, GltfSurface& s) {
-    if (s.ior <= 0) return;  // bends nothing
+    if (s.ior <= 0) return;  // no refraction
     s.iors = dispersed_ior(s.ior, m.dispersion, wavelengths.nm);
     s.ior = s.iors[0];
     s.disperses = !wavelengths.secondary_ended;
@@ -98,7 +97,7 @@ SpecularGlossiness read_specular_glossiness(const GltfMaterial& m,
     return s;
 }
 
-/// An index of 0 has a reflectance of 1, which specular_color scales to any F0; F90 is 1.
+/// An index of 0 gives a reflectance of 1, which specular_color scales to the F0; F90 is 1.
 GltfSurface specular_glossiness(const GltfMaterial& m, const Textures& textures,
                                 const SurfaceHit& hit, const Wavelengths& wavelengths) {
     const SpecularGlossiness s = read_specular_glossiness(m, textures, hit);

@@ -1,11 +1,11 @@
-// gltf_surface.h -- what glTF's factors and textures say of one point: the parameters of its BSDF.
+// gltf_surface.h -- evaluates glTF factors and textures at a hit to the parameters of the BSDF.
 #pragma once
 #include "material/bsdf_gltf.h"
 #include "material/material.h"
 
 namespace dg {
 
-/// Factor x texture x vertex colour, within 0 and 1.
+/// Factor x texture x vertex colour, clamped to [0, 1].
 Rgb base_color(const GltfMaterial& m, const std::vector<Texture>& textures,
                const SurfaceHit& hit);
 
@@ -13,12 +13,12 @@ Rgb base_color(const GltfMaterial& m, const std::vector<Texture>& textures,
 float slope_variance(const GltfMaterial& m, const std::vector<Texture>& textures,
                      const SurfaceHit& hit);
 
-/// Metallic-roughness or specular-glossiness with transmission, diffuse transmission, volume and
-/// dispersion; without what lies over it (gltf_layers.h). Reads hit.slope_variance.
+/// Metallic-roughness or specular-glossiness with transmission, diffuse transmission, volume and dispersion, without
+/// layers (gltf_layers.h). Reads hit.slope_variance.
 GltfSurface gltf_surface(const GltfMaterial& m, const std::vector<Texture>& textures,
                          const SurfaceHit& hit, const Wavelengths& wavelengths);
 
-/// Diffuse and specular albedo of the same, for the `albedo` channel.
+/// Diffuse and specular albedo of the surface, for the `albedo` channel.
 Rgb surface_albedo(const GltfMaterial& m, const std::vector<Texture>& textures,
                    const SurfaceHit& hit);
 

@@ -1,5 +1,4 @@
-// indexed_albedo.h -- tables of what a lobe returns that depends on an index of refraction, besides angle and
-// roughness.
+// indexed_albedo.h -- albedo tables over index of refraction, roughness and angle.
 #pragma once
 #include <memory>
 
@@ -7,7 +6,8 @@
 
 namespace dg {
 
-/// Four numbers by index, roughness and cosine; linear in (n - 1) / (n + 1), in sqrt(cos) and in sqrt(alpha).
+/// Table of four numbers by index, roughness and cosine, interpolated linearly in (n - 1) / (n + 1), sqrt(alpha) and
+/// sqrt(cos).
 class IndexedAlbedo {
   public:
     static constexpr int kIndices = 16, kAngles = GgxAlbedo::kAngles, kRoughnesses = 16;
@@ -17,15 +17,15 @@ class IndexedAlbedo {
     using Integrand = LobeAlbedo (*)(float cosine, float alpha, float n);
     explicit IndexedAlbedo(Integrand integrand);
 
-    /// One index and one roughness of the table.
+    /// Interpolated table row of an index and a roughness.
     struct Row {
-        const LobeAlbedo* corners[2][2] = {};   // by index and roughness
+        const LobeAlbedo* corners[2][2] = {};   // per index and roughness
         float index_share = 0, roughness_share = 0;
-        LobeAlbedo mean{0.f};   // of this very interpolant, weighted by cos
+        LobeAlbedo mean{0.f};   // cosine-weighted mean of the interpolant
 
         LobeAlbedo at(float cosine) const;
     };
-    /// n >= 1.
+    /// Requires n >= 1.
     Row row(float n, float alpha) const;
 
   private:

@@ -1,5 +1,5 @@
-// layers_test.cpp -- coat, sheen, stretched and filmed lobes against the formulas of their
-// extensions, and their parameters and textures at a hit.
+// layers_test.cpp -- coat, sheen, anisotropic and iridescent lobes against the formulas of their extensions, and their
+// parameters and textures at a hit.
 #include <doctest/doctest.h>
 
 #include "material/bsdf_check.h"
@@ -71,7 +71,7 @@ TEST_CASE("anisotropy: strength, rotation and texture decide the two roughnesses
 TEST_CASE("the clear coat: mix(base, specular_brdf, factor F(|N.V|))") {
     GltfMaterial m;
     m.metallic = 0;
-    m.specular = 0;  // Lambert below
+    m.specular = 0;  // Lambertian base
     m.base_color = {0.5f, 0.5f, 0.5f};
     m.clearcoat.factor = 0.8f;
     m.clearcoat.roughness = 0.6f;
@@ -96,14 +96,14 @@ TEST_CASE("textures of the coat: R factor, G roughness, and a normal of its own"
     const auto plain = shaded<LayeredBsdf>(m, textures, hit_from({0.1f, 0, 1}));
     CHECK(plain.coat.factor == doctest::Approx(0.2));
     CHECK(plain.coat.alpha == doctest::Approx(0.16));
-    CHECK(plain.coat.ns == kN);  // the base's normal map is not the coat's
+    CHECK(plain.coat.ns == kN);  // the coat ignores the base's normal map
     CHECK(plain.base.ns.x > 0.3f);
     m.clearcoat.normal_texture = slot(1);
     m.clearcoat.normal_scale = 0.5f;
     const auto bumped = shaded<LayeredBsdf>(m, textures, hit_from({0.1f, 0, 1}));
     CHECK(bumped.coat.ns.x / bumped.coat.ns.z ==
           doctest::Approx(0.5 / (2 * 200 / 255. - 1)).epsilon(1e-3));
-    // A normal that turns away is bent back until the viewer sees it.
+    // A normal that faces away is adjusted to face the viewer.
     const auto grazing = shaded<LayeredBsdf>(m, textures, hit_from({-1, 0, 0.1f}));
     CHECK(dot(grazing.coat.ns, normalize(Vec3f{-1, 0, 0.1f})) > 0);
 }
@@ -153,7 +153,7 @@ TEST_CASE("textures of sheen: RGB colour, A roughness") {
     CHECK(b.sheen.largest == doctest::Approx(0.8));
     CHECK(b.sheen.alpha == doctest::Approx(0.54 * 0.54));
     m.sheen.color = {0, 0, 0};
-    shaded<GltfBsdf>(m, kTexels, hit_from({0, 0, 1}));  // no layer at all
+    shaded<GltfBsdf>(m, kTexels, hit_from({0, 0, 1}));  // no layers
 }
 
 TEST_CASE("iridescence: factor R, thickness G between its ends, the outside of a coat") {

@@ -1,4 +1,4 @@
-// material.cpp -- from a material and a hit to a BSDF, an emission, an opacity.
+// material.cpp -- BSDF, emission and opacity of a material at a hit.
 #include "material/material.h"
 
 #include "material/gltf_surface.h"
@@ -50,7 +50,7 @@ Vec3f facing_normal(Vec3f ns, Vec3f ng, Vec3f wo) {
 
 namespace {
 
-/// Share of the second part of a mixture among what is there: rays that pass one part may be stopped by the other.
+/// Share of the second part of a mixture in its opacity: rays that pass one part may be stopped by the other.
 float share_of_second(const MixMaterial& m, const Textures& textures, const SurfaceHit& hit) {
     float share = m.amount;
     if (m.amount_texture.used()) share *= clamped(read_point(m.amount_texture, textures, hit).r);
@@ -63,7 +63,7 @@ float share_of_second(const MixMaterial& m, const Textures& textures, const Surf
     return first + second > 0 ? second / (first + second) : share;
 }
 
-/// Does what(part) with the part that the hit has chosen. What is left of the choice chooses within that.
+/// Calls a function with the part that the hit has chosen; the rescaled random number chooses in nested mixtures.
 template <typename What>
 auto in_part(const MixMaterial& m, const Textures& textures, SurfaceHit& hit, What what) {
     const float share = share_of_second(m, textures, hit), choice = hit.choice;
@@ -81,12 +81,12 @@ Bsdf shade_kind(const MixMaterial& m, const Textures& textures, SurfaceHit& hit,
                    [&](const Material& part) { return shade(part, textures, hit, wavelengths); });
 }
 
-/// A window without glass.
+/// A BSDF that passes light unchanged.
 Bsdf shade_kind(const BoundaryMaterial&, const Textures&, const SurfaceHit& hit, const Wavelengths&) {
     return DielectricBsdf{hit.ns, hit.ng, 1.f, 1, 0};
 }
 
-/// The coat follows the mesh and not the normal map of the base, so it is read first.
+/// The coat uses the normal of the mesh rather than the base's normal map, so it is read first.
 Bsdf shade_kind(const GltfMaterial& m, const Textures& textures, SurfaceHit& hit,
                 const Wavelengths& wavelengths) {
     if (m.unlit) return DiffuseBsdf{hit.ns, hit.ng, 0.f};
@@ -204,8 +204,7 @@ float opacity_of_kind(const GltfMaterial& m, const Textures& textures, const Vec
     if (m.alpha_mode == GltfMaterial::AlphaMode::opaque) return 1;
     const float alpha = m.base_alpha * vertex_alpha;
     if (!m.base_color_texture.used()) return masked(m, alpha);
-    // At a point: the mean of what passes or not is the coverage, which a mean that is then
-    // held against the cutoff would lose.
+    // Looked up at a point: the mean of thresholded values is the coverage, unlike a thresholded mean.
     const TextureSlot& slot = m.base_color_texture;
     const Vec2f at = slot.transform(uv[slot.uv_set]);
     return masked(m, alpha * textures[slot.index].lookup(at).a);
@@ -259,7 +258,7 @@ Clear clearness_of(const GltfMaterial& m) {
     return m.thickness > 0 ? Clear::volume : Clear::sheet;
 }
 
-/// A sheet among its parts must be asked about by every ray; what bends light stops those that it must.
+/// A sheet among the parts of a mixture requires a test for every shadow ray; volumes block the rays that they must.
 Clear clearness_of(const MixMaterial& m) {
     Clear clearest = Clear::no;
     for (const MixPart& part : m.parts) {
@@ -294,15 +293,14 @@ bool is_one_sided(const Material& material) {
 bool has_cutout(const Material& material, const Textures& textures) {
     if (material.opacity < 1 || material.opacity_texture.used()) return true;
     if (any_part(material, [&](const Material& part) { return has_cutout(part, textures); })) return true;
-    // A mesh may bring its own alpha at the vertices, so factor and texture alone prove
-    // nothing.
+    // Vertex colours may have alpha, so factor and texture do not suffice.
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
     return m && m->alpha_mode != GltfMaterial::AlphaMode::opaque;
 }
 
 namespace {
 
-/// Sheen and coat over the albedo of the base, as seen from wo.
+/// Albedo of the base with sheen and coat, from wo.
 Rgb layered_albedo(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit,
                    Rgb base) {
     const float cos_o = dot(hit.ns, hit.wo);

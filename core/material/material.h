@@ -1,5 +1,5 @@
-// material.h -- what surfaces are made of. Adding a kind: a struct in surfaces.h, a bsdf_x.h/.cpp
-// with its BSDF, an alternative in both variants, and a shade_kind() in shade_surfaces.cpp.
+// material.h -- materials of surfaces. To add a kind: a struct in surfaces.h, a bsdf_x.h/.cpp with its BSDF, an
+// alternative in both variants, and a shade_kind() in shade_surfaces.cpp.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -29,7 +29,7 @@ struct GltfMaterial {
     TextureSlot metallic_roughness_texture;  // G roughness, B metallic
     float normal_scale = 1;
     TextureSlot normal_texture;
-    TextureSlot occlusion_texture;  // read, and not used: light transport does it
+    TextureSlot occlusion_texture;  // read and ignored: light transport computes occlusion
     Rgb emissive{0, 0, 0};          // factor x strength, cd/m2
     TextureSlot emissive_texture;
     enum class AlphaMode { opaque, mask, blend } alpha_mode = AlphaMode::opaque;
@@ -54,13 +54,12 @@ struct GltfMaterial {
     TextureSlot diffuse_transmission_texture;  // A
     Rgb diffuse_transmission_color{1, 1, 1};
     TextureSlot diffuse_transmission_color_texture;  // RGB
-    /// KHR_materials_pbrSpecularGlossiness instead of all of the above that reflects:
-    /// base_color is its diffuse colour, specular_color its F0.
+    /// KHR_materials_pbrSpecularGlossiness replaces the reflection parameters above: base_color is its diffuse colour,
+    /// specular_color its F0.
     bool specular_glossiness = false;
     float glossiness = 1;
     TextureSlot specular_glossiness_texture;  // RGB F0, A glossiness
-    /// KHR_materials_unlit: shines with its base colour in cd/m2 and reflects nothing. From
-    /// both sides, as surfaces are shaded from behind too.
+    /// KHR_materials_unlit: emits its base colour in cd/m2 on both sides and reflects nothing.
     bool unlit = false;
 };
 
@@ -69,61 +68,58 @@ struct Material {
     std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, GltfMaterial, CoatedMaterial,
                  MixMaterial, BoundaryMaterial>
         kind;
-    /// Extra emission of any kind, cd/m2 (front side only, unless two_sided_emission).
+    /// Additional emission, cd/m2 (front side only, unless two_sided_emission).
     Rgb emission{0, 0, 0};
     bool two_sided_emission = false;
-    std::int32_t profile = -1;  // of all emission, by direction; index, -1: none
-    float opacity = 1;          // share of it that is there; times R of the texture
+    std::int32_t profile = -1;  // index of the directional profile of all emission; -1: none
+    float opacity = 1;          // covered fraction; times R of the texture
     TextureSlot opacity_texture = {};
-    TextureSlot normal_texture = {};   // of kinds that have none of their own
+    TextureSlot normal_texture = {};   // for kinds without a normal map
     float normal_scale = 1;
-    bool two_sided = true;      // false: black from behind, emission aside
+    bool two_sided = true;      // false: black from behind, except for emission
     TextureSlot emission_texture = {};   // RGB, a factor on `emission`
 };
 
-/// Throws Error naming the material and the field: a factor that is not finite or out of
-/// its range, a texture slot that points at no texture. What passes here is not looked at
-/// again in the loop.
+/// Throws Error that names the material and the field: for a factor that is not finite or out of range, or a texture
+/// slot with an invalid index. Rendering relies on this check.
 void validate(const Material& material, const std::vector<Texture>& textures);
 
-/// BSDF at a hit: textures read, normal map applied. The hit's ns is replaced by the
-/// mapped normal, bent toward ng where wo or its mirror image would fall below the
-/// surface (that would be black). Single-sided surfaces are shaded from behind too, with
-/// the normal turned round: a camera inside a room sees walls.
+/// Evaluates textures and the normal map to the BSDF at a hit. Replaces the hit's ns by the mapped normal, adjusted
+/// toward ng where wo or its mirror direction would be below the surface, which would be black. Single-sided surfaces
+/// are also shaded from behind, with a flipped normal, so that a camera inside a room sees walls.
 Bsdf shade(const Material& material, const std::vector<Texture>& textures,
            SurfaceHit& hit, const Wavelengths& wavelengths);
 
-/// Emitted radiance toward hit.wo as Rgb in cd/m2 (D65-shaped); 0 from the back of a
-/// one-sided emitter. A clear coat takes its share (KHR_materials_clearcoat), by the mesh's
-/// normal in hit.ns and by hit.tangent.
+/// Emitted luminance toward hit.wo as Rgb in cd/m2 (D65-shaped); 0 from behind a one-sided emitter. A clear coat
+/// attenuates it (KHR_materials_clearcoat), depending on the mesh's normal in hit.ns and on hit.tangent.
 Rgb emitted(const Material& material, const std::vector<Texture>& textures,
             const SurfaceHit& hit);
 
-/// True when emission changes with the direction it is seen from.
+/// True if emission depends on the direction.
 bool emission_is_coated(const Material& material);
-/// Factor of all emission, and its textures. Of a glTF material's that of KHR_materials_unlit is its base
-/// colour, and vertex colours count there too.
+/// Factor of all emission, and its textures. For KHR_materials_unlit these are the base colour with its texture and
+/// vertex colours.
 Rgb emission_factor(const Material& material);
 std::array<TextureSlot, 2> emission_textures(const Material& material);
-/// From behind as well.
+/// Whether it also emits from behind.
 bool emits_from_behind(const Material& material);
 
-/// True when the material emits at all; the mean over a triangle is light/'s business.
+/// True if the material may emit; light/ computes means over triangles.
 bool emits(const Material& material);
 
-/// Ways in which light may go straight on through at some point of the material: never less than
-/// its BSDFs' straight_transmittance() says.
+/// Ways in which light may pass the material unrefracted at some point; conservative with respect to
+/// straight_transmittance() of its BSDFs.
 Clear clearness(const Material& material);
 
-/// True when a texture bends its normals.
+/// True if it has a normal map.
 bool has_normal_map(const Material& material);
-/// True when it is black from behind, or a part of it is.
+/// True if it, or a part of a mixture, is black from behind.
 bool is_one_sided(const Material& material);
 
-/// False where the material is opaque everywhere, so that rays need not ask.
+/// False if the material is opaque everywhere, so that rays need no opacity test.
 bool has_cutout(const Material& material, const std::vector<Texture>& textures);
-/// Opacity in [0,1] at uv with vertex colour alpha; 1 for opaque materials. mask gives 0
-/// or 1. `time`: for parts of mixtures that change.
+/// Opacity in [0,1] at uv, including vertex colour alpha; 1 for opaque materials, 0 or 1 for masks. `time`: for
+/// animated parts of mixtures.
 float opacity(const Material& material, const std::vector<Texture>& textures,
               const Vec2f uv[2], float vertex_alpha, float time = 0);
 

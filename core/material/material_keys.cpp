@@ -1,4 +1,4 @@
-// material_keys.cpp -- two materials, number by number.
+// material_keys.cpp -- interpolates materials field by field.
 #include "material/material_keys.h"
 
 #include <concepts>
@@ -13,8 +13,8 @@ namespace {
 template <typename M, typename T>
 concept Is = std::same_as<std::remove_const_t<M>, T>;
 
-// All fields of each struct. The bindings must name every one of them, so a field that is added does
-// not compile until it has its place here.
+// All fields of each struct. Structured bindings must name every field, so a new field does not compile until it is
+// listed here.
 auto fields(Is<TextureSlot> auto& s) {
     auto& [index, uv_set, m] = s;
     return std::tie(index, uv_set, m[0], m[1], m[2], m[3], m[4], m[5]);
@@ -71,12 +71,12 @@ auto fields(Is<GltfMaterial> auto& m) {
                     c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, d0, d1, d2, d3, d4, d5, d6);
 }
 
-/// No number, and nothing that has any.
+/// Types without numbers.
 template <typename T>
 concept Whole = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::same_as<T, SharedSpectrum> ||
                 std::same_as<T, MixPart>;
 
-/// Does `number(a, b)` to each pair of floats, `other(a, b)` to each pair of what is no number.
+/// Calls `number(a, b)` for each pair of floats, and `other(a, b)` for each pair of other fields.
 template <typename Number, typename Other>
 struct Pairs {
     Number number;
@@ -100,7 +100,7 @@ struct Pairs {
     }
 };
 
-/// The name is left alone: copying it would cost more than all numbers.
+/// Skips the name, since copying it would cost more than all numbers.
 template <typename Number, typename Other>
 void each_pair(Material& a, const Material& b, Number number, Other other) {
     Pairs<Number, Other> pairs{number, other};
@@ -124,7 +124,7 @@ Material without_name(const Material& m) {
             m.normal_texture, m.normal_scale, m.two_sided, m.emission_texture};
 }
 
-/// Never beyond the ends, whose ranges have been checked.
+/// Clamped to the values at both keys, which have been validated.
 void go_toward(float& a, float b, float share) {
     if (a == b || (!std::isfinite(b - a) && share < 1)) return;
     a = share < 1 ? std::clamp(a * (1 - share) + b * share, std::min(a, b), std::max(a, b)) : b;

@@ -1,5 +1,5 @@
-// material_keys.h -- materials that change while the shutter is open: every number goes linearly
-// from key to key; kind, textures and modes stay.
+// material_keys.h -- materials that change while the shutter is open: numbers are interpolated linearly between keys;
+// kind, textures and modes are constant.
 #pragma once
 #include <memory>
 #include <span>
@@ -9,16 +9,14 @@
 
 namespace dg {
 
-/// `share` of the way from a to b. Textures and modes are those of a, and nobody asks it for its name.
-/// A length that is infinite at one end only stays as it is until the next key.
+/// Interpolates from a to b. Textures and modes are taken from a; the name is not set. A length that is infinite in
+/// only one of both stays constant until the next key.
 Material blend(const Material& a, const Material& b, float share);
 
-/// Throws Error for a key that is no material by itself (validate), or is of another kind, has other
-/// textures or other modes than the first.
+/// Throws Error for a key that is not a valid material, or differs from the first key in kind, textures or modes.
 void validate(std::span<const Material> keys, const std::vector<Texture>& textures);
 
-/// The least and the most that each number is at any time: what is decided once for the whole
-/// interval is decided by these.
+/// Minimum and maximum of each number over time, for decisions that hold for the whole interval.
 struct MaterialRange {
     Material least, most;
 };
@@ -29,31 +27,31 @@ struct MaterialChange {
     MaterialRange range;
 };
 
-/// Material that is as bright as it ever is, or brighter; its textures lie as they do at the first key.
+/// Material that is at least as bright as at any time, with the texture transforms of the first key.
 Material brightest(const Keyed<Material>& keys, const MaterialRange& range);
 
-/// Ways in which light may go straight on through at some time; at one time there may be fewer.
+/// Ways in which light may pass unrefracted at some time of the interval.
 Clear clearness(const MaterialRange& range);
 
-/// A material at one time: the scene's own where it does not change, which costs nothing.
+/// A material at a time; refers to the scene's material if it does not change, without a copy.
 class MaterialAt {
   public:
     explicit MaterialAt(const Material* still) : now_(still) {}
     MaterialAt(const Keyed<Material>& keys, float time);
     MaterialAt(const MaterialAt&) = delete;
     MaterialAt& operator=(const MaterialAt&) = delete;
-    operator const Material&() const& { return *now_; }  // NOLINT: it is one
+    operator const Material&() const& { return *now_; }  // NOLINT: implicit
     operator const Material&() const&& = delete;         // it must outlive the reference
 
   private:
-    struct Delete {  // not inlined: the loop over vertices would grow by it, and slow down
+    struct Delete {  // not inlined, which would slow down the loop over vertices
         void operator()(const Material* m) const;
     };
     const Material* now_;
     std::unique_ptr<const Material, Delete> own_;
 };
 
-/// A part of a mixture at one time.
+/// A part of a mixture at a time.
 inline MaterialAt part_at(const MixPart& part, float time) {
     if (part.change) return MaterialAt(part.change->keys, time);
     return MaterialAt(part.still);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kWords = sizeof(GltfMaterial) / 4;
 
-/// A material whose every word is this number, but for its modes.
+/// A material with this number in every field except modes.
 GltfMaterial filled(float number) {
     GltfMaterial m;
     float words[kWords];
@@ -94,7 +94,7 @@ TEST_CASE("keys of another kind, texture or mode are refused, and so are numbers
 
 TEST_CASE("what may be clear at some time is clear for shadow rays, at whatever key it is not") {
     GltfMaterial rough, dark;
-    rough.transmission = 1;  // clear only in between, near the end
+    rough.transmission = 1;  // clear only between the keys, near the end
     dark.roughness = dark.metallic = 0;
     CHECK(clearness(gltf(rough)) == Clear::no);
     CHECK(clearness(gltf(dark)) == Clear::no);

@@ -5,7 +5,7 @@
 namespace dg {
 namespace {
 
-// GGX alpha above which a lobe is too wide for a caustic to be seen.
+// GGX alpha above which a lobe is too wide for visible caustics.
 constexpr float kNarrowAlpha = 0.1f;
 
 bool any_used(std::initializer_list<TextureSlot> slots) {

@@ -1,4 +1,4 @@
-// material_read.h -- reading textures and normals at a hit, for this room's own files.
+// material_read.h -- texture and normal lookups at a hit, internal to this folder.
 #pragma once
 #include "material/material.h"
 
@@ -6,15 +6,14 @@ namespace dg {
 
 using Textures = std::vector<Texture>;
 
-/// The mean over what the ray's cone covers.
+/// Filtered lookup over the footprint of the ray cone.
 inline Texture::Texel read(const TextureSlot& slot, const Textures& textures,
                            const SurfaceHit& hit) {
     return textures[slot.index].lookup(slot.transform(hit.uv[slot.uv_set]),
                                        slot.turned(hit.footprint[slot.uv_set]));
 }
-/// At the point itself. So is read what decides whether glass is clear there: shadow rays
-/// have no cone, and a path must not scatter at glass that they went straight through, or
-/// the light behind it counts twice.
+/// Unfiltered lookup at the point. Textures that determine whether glass is clear need it: shadow rays have no cone,
+/// and if a path scattered at glass that shadow rays passed unscattered, the light behind would count twice.
 inline Texture::Texel read_point(const TextureSlot& slot, const Textures& textures,
                                  const SurfaceHit& hit) {
     return textures[slot.index].lookup(slot.transform(hit.uv[slot.uv_set]));
@@ -34,22 +33,21 @@ inline Rgb clamped(Rgb c) {
 Vec3f mapped_normal(const TextureSlot& slot, float scale, const Textures& textures,
                     const SurfaceHit& hit);
 
-/// ns, or what lies nearest to it on the way to ng from where both wo and its mirror
-/// image are above the surface: at least a tenth as high as wo itself. Without this,
-/// normal maps and interpolated normals at silhouettes are black where they turn away
-/// from the viewer.
+/// ns, or the nearest normal between ns and ng for which wo and its mirror direction are above the surface, at least a
+/// tenth as high as wo. Otherwise normal maps, and interpolated normals at silhouettes, would be black where they face
+/// away from the viewer.
 Vec3f visible_normal(Vec3f ns, Vec3f ng, Vec3f wo);
 
-/// ns of a normal map on a matte surface, which has no mirror image and keeps steep normals. One that faces away from
-/// wo belongs to a slope that is hidden; what is seen in its place is the slope across, turned half about ng, as pbrt
-/// and Mitsuba have it.
+/// ns of a normal map on a matte surface, which has no mirror direction and keeps steep normals. A normal that faces
+/// away from wo belongs to a hidden slope. It is rotated by half a turn about ng, to the visible opposite slope, as in
+/// pbrt and Mitsuba.
 Vec3f facing_normal(Vec3f ns, Vec3f ng, Vec3f wo);
 
-// The extensions of gltf_layers.h at a hit; hit.ns is the normal of the mesh for
-// read_coat, that of the base for read_anisotropy.
+// The extensions of gltf_layers.h at a hit. hit.ns is the normal of the mesh for read_coat, and the normal of the base
+// for read_anisotropy.
 Coat read_coat(const ClearcoatLayer& layer, const Textures& textures,
                const SurfaceHit& hit);
-/// Factor of the coat alone, texture and all.
+/// Factor of the coat, including its texture.
 float coat_factor(const ClearcoatLayer& layer, const Textures& textures,
                   const SurfaceHit& hit);
 Vec3f coat_normal(const ClearcoatLayer& layer, const Textures& textures,
@@ -59,7 +57,7 @@ float sheen_roughness(const SheenLayer& layer, const Textures& textures,
                       const SurfaceHit& hit);
 void read_anisotropy(const Anisotropy& a, const Textures& textures, const SurfaceHit& hit,
                      GltfSurface& s);
-/// `outside`: index of what lies above the film.
+/// `outside`: index above the film.
 void read_iridescence(const Iridescence& i, const Textures& textures,
                       const SurfaceHit& hit, float outside, Spectrum wavelengths_nm,
                       GltfSurface& s);

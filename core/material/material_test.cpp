@@ -68,7 +68,7 @@ TEST_CASE("base colour = factor x texture x vertex colour, by set and transform"
     m.base_color_texture.m[2] = 0.5f;
     check_spectrum(reflectance(shaded(m, textures, h)), {1, 0, 0.2f});
     h.color[0] = 0.5f;
-    h.color[2] = 9;  // cannot make light
+    h.color[2] = 9;  // clamped, so that it gains no energy
     check_spectrum(reflectance(shaded(m, textures, h)), {0.5f, 0, 1});
 }
 
@@ -173,7 +173,7 @@ TEST_CASE("transmission: thin walls do not bend, volumes follow Snell and absorb
     CHECK(bent->wi.x == doctest::Approx(-0.4));
     const double f = fresnel_dielectric(0.8f, 1.5f);
     CHECK(bent->weight[0] * bent->pdf == doctest::Approx(0.5 * (1 - f) / 2.25));
-    // 2 m leave 0.25, 1 m leaves its root, 4 m its square.
+    // Transmittance is 0.25 after 2 m, its square root after 1 m, its square after 4 m.
     CHECK(volume.interior().present);
     CHECK(volume.interior().transmittance(2)[0] == doctest::Approx(0.25));
     CHECK(volume.interior().transmittance(1)[1] == doctest::Approx(0.5));
@@ -182,7 +182,7 @@ TEST_CASE("transmission: thin walls do not bend, volumes follow Snell and absorb
     m.attenuation_distance = std::numeric_limits<float>::infinity();
     CHECK_FALSE(shaded(m, {}, h).interior().present);
 
-    // From inside, beyond the critical angle, everything is reflected.
+    // Total internal reflection beyond the critical angle.
     const SurfaceHit inside = hit_from({0.8f, 0, -0.6f});
     const auto total = shaded(m, {}, inside).sample(inside.wo, u_transmit, {0.5f, 0.5f});
     REQUIRE(total);
@@ -219,7 +219,7 @@ TEST_CASE("normal map: tangent frame, scale, handedness") {
 }
 
 TEST_CASE("bumps under the footprint become roughness, and do not shorten the normal") {
-    // Slopes of 0.6 to either side: their mean is 0.8 long.
+    // Normals tilted by 0.6 to either side: the length of their mean is 0.8.
     std::vector<Texture> textures{pair({204, 128, 230}, {51, 128, 230})};
     textures[0].pyramid = build_pyramid(textures[0], false);
     GltfMaterial m;
@@ -235,7 +235,7 @@ TEST_CASE("bumps under the footprint become roughness, and do not shorten the no
     CHECK(length(b.ns - Vec3f{0, 0, 1}) < 0.01f);
     m.normal_scale = 0;
     CHECK(shaded(m, textures, far).alpha == doctest::Approx(0.25));
-    m.normal_scale = 1;  // the same where the roughness comes from elsewhere
+    m.normal_scale = 1;  // the same with roughness from a texture
     textures.push_back(pair({255, 255, 255}, {255, 255, 255}));
     m.metallic_roughness_texture = slot(1);
     CHECK(shaded(m, textures, far).alpha == b.alpha);
@@ -274,7 +274,7 @@ TEST_CASE("no normal turns a surface black: wo and its mirror image stay above")
     const Wavelengths w = wavelengths();
     for (int i = 0; i < 20000; ++i) {
         SurfaceHit h = hit_from(random.direction());
-        h.ns = random.direction();  // also such that no mesh would give
+        h.ns = random.direction();  // including normals that no mesh has
         const float height = std::abs(h.wo.z);
         if (height < 1e-3f) continue;
         const Bsdf b = shade({"m", ConductorMaterial{{1, 1, 1}, 0}, {}, false}, {}, h, w);
@@ -285,7 +285,7 @@ TEST_CASE("no normal turns a surface black: wo and its mirror image stay above")
         REQUIRE(s);
         CHECK(side * s->wi.z > 0.09f * height);
     }
-    SurfaceHit h = hit_from({0, 0.6f, 0.8f});  // and a good one is left alone
+    SurfaceHit h = hit_from({0, 0.6f, 0.8f});  // a valid normal is not changed
     const Vec3f ns = h.ns = normalize(Vec3f{0.1f, 0.1f, 1});
     shade({"m", DiffuseMaterial{}, {}, false}, {}, h, w);
     CHECK(h.ns == ns);

@@ -1,4 +1,4 @@
-// mipmap.cpp -- each level is the mean of the one before it.
+// mipmap.cpp -- computes each level from the level before.
 #include "material/mipmap.h"
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 namespace dg {
 namespace {
 
-/// Texels under one texel of the smaller level along one axis: n = 2 m texels under m are
-/// two for each; n = 2 m + 1 are 2 + 1/m, so three, of which the outer ones in part.
+/// Texels covered by a texel of the smaller level along an axis: two for n = 2 m; 2 + 1/m for n = 2 m + 1, so three,
+/// with partial weights for the outer texels.
 struct Span {
     int first, count;
     std::array<float, 3> weight;
@@ -23,7 +23,7 @@ Span span_under(int i, int n, int m) {
     return {2 * i, 3, {float(m - i) / total, float(m) / total, float(i + 1) / total}};
 }
 
-/// The values of one level, and how they stand for light.
+/// Values of a level, and their conversion to linear light.
 template <typename T>
 struct Image {
     T* values;
@@ -43,7 +43,7 @@ void encode(float v, bool srgb, std::uint8_t& to) {
     to = srgb ? srgb_code(v) : static_cast<std::uint8_t>(std::min(v, 1.f) * 255 + 0.5f);
 }
 
-/// Any size, any kind of value.
+/// General case: any size, any format.
 template <typename T>
 void shrink_texel(const Image<const T>& from, const Span& sx, const Span& sy,
                   bool weigh_by_alpha, T* to, bool srgb) {
@@ -69,7 +69,7 @@ void shrink_texel(const Image<const T>& from, const Span& sx, const Span& sy,
     }
 }
 
-/// Even sizes of 8-bit values, the common case: sums of four whole numbers.
+/// Common case: 8-bit values and even sizes, with integer sums of four.
 template <int kChannels>
 void shrink_row(const std::uint8_t* upper, const std::uint8_t* lower, std::uint8_t* to,
                 int width, bool srgb, int half) {
@@ -92,7 +92,7 @@ bool shrink_even(const Image<const float>&, const Image<float>&) { return false;
 bool shrink_even(const Image<const std::uint8_t>& from, const Image<std::uint8_t>& to) {
     if (from.width != 2 * to.width || from.height != 2 * to.height) return false;
     constexpr auto kRows = std::array{shrink_row<1>, shrink_row<2>, shrink_row<3>, shrink_row<4>};
-    // Halves are rounded up in one row and down in the next, so that the mean does not drift.
+    // Rounds halves up and down in alternate rows, so that the mean does not drift.
     for (int y = 0; y < to.height; ++y)
         kRows[from.channels - 1](from.row(2 * y), from.row(2 * y + 1), to.row(y), to.width,
                                  from.srgb, 1 + (y & 1));

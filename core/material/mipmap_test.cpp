@@ -1,4 +1,4 @@
-// mipmap_test.cpp -- pyramids hold means of light, and footprints choose the right level.
+// mipmap_test.cpp -- pyramids preserve the mean of light, and footprints choose the correct level.
 #include "material/mipmap.h"
 
 #include <doctest/doctest.h>
@@ -24,12 +24,12 @@ Texture image(int width, int height, int channels, std::vector<T> values, bool s
     return t;
 }
 
-/// Footprint as wide as `texels` of the texture, both ways.
+/// Square footprint with a width of `texels`.
 UvFootprint wide(const Texture& t, float texels) {
     return {{texels / float(t.width), 0}, {0, texels / float(t.height)}};
 }
 
-/// Columns of 0 and 255 by turns.
+/// Alternating columns of 0 and 255.
 Texture stripes(int size, bool srgb) {
     Bytes values;
     for (int i = 0; i < size * size; ++i) values.push_back(i % 2 ? 255 : 0);
@@ -79,7 +79,7 @@ TEST_CASE("8-bit means do not drift: noise of 512 x 512 keeps its light to a thi
                 sum += t.lookup({(x + 0.5f) / 512, (y + 0.5f) / 512}).g;
         const double mean = sum / (512 * 512);
         CHECK(t.lookup({0.3f, 0.7f}, wide(t, 64)).g == doctest::Approx(mean).epsilon(0.05));
-        // A level of 8 x 8, whole.
+        // A level of 8 x 8.
         double far = 0;
         for (int i = 0; i < 64; ++i)
             far += t.lookup({(i % 8 + 0.5f) / 8, (i / 8 + 0.5f) / 8}, wide(t, 64)).g / 64;
@@ -92,7 +92,7 @@ TEST_CASE("stripes far away read their mean of light; in sRGB that is no mean of
         const Texture t = stripes(64, srgb);
         for (const float texels : {2.f, 5.f, 64.f, 1e6f})
             CHECK(t.lookup({0.123f, 0.4f}, wide(t, texels)).r == doctest::Approx(0.5).epsilon(0.01));
-        CHECK(t.lookup({0.5f / 64, 0.5f}, wide(t, 0.9f)).r == 0);  // near by: the texel
+        CHECK(t.lookup({0.5f / 64, 0.5f}, wide(t, 0.9f)).r == 0);  // close up: the texel
     }
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("transparent texels give no colour where alpha weighs") {
     CHECK(c.a == doctest::Approx(0.5).epsilon(0.01));
     t = image(2, 1, 4, leaf);
     CHECK(t.lookup({0.5f, 0.5f}, wide(t, 4)).b == doctest::Approx(0.5).epsilon(0.01));
-    t = image(2, 1, 4, Bytes{200, 10, 0, 0, 0, 10, 100, 0}, false, true);  // nothing to see
+    t = image(2, 1, 4, Bytes{200, 10, 0, 0, 0, 10, 100, 0}, false, true);  // fully transparent
     CHECK(t.lookup({0.5f, 0.5f}, wide(t, 4)).g == doctest::Approx(10 / 255.0));
 }
 
@@ -135,7 +135,7 @@ TEST_CASE("the six filters of glTF for minified texels") {
     std::iota(ramp.begin(), ramp.end(), 0.f);
     Texture t = image(4, 4, 1, ramp);
     using Mip = MinFilter::Mip;
-    const Vec2f uv{0.3f, 0.2f};  // a quarter of a texel beside centres of level 0
+    const Vec2f uv{0.3f, 0.2f};  // a quarter of a texel off centers of level 0
     const auto read = [&](TextureFilter within, Mip between, float texels) {
         t.min_filter = {within, between};
         return t.lookup(uv, wide(t, texels)).r;
@@ -148,7 +148,7 @@ TEST_CASE("the six filters of glTF for minified texels") {
     CHECK(read(kNearest, Mip::nearest, 3.5f) == 7.5f);
     CHECK(read(kNearest, Mip::linear, std::sqrt(8.f)) == doctest::Approx(5));
     const float middle = read(kLinear, Mip::nearest, 2);
-    CHECK(middle == doctest::Approx(2.5 + 0.1 * 2 + 0.1 * 8));  // 0.1 beside a centre
+    CHECK(middle == doctest::Approx(2.5 + 0.1 * 2 + 0.1 * 8));  // 0.1 off a center
     CHECK(read(kLinear, Mip::linear, std::sqrt(8.f)) == doctest::Approx(0.5 * (middle + 7.5)));
     CHECK(read(kLinear, Mip::linear, 1.0001f) == doctest::Approx(fine).epsilon(1e-3));
 }

@@ -1,5 +1,5 @@
-// models_test.cpp -- KHR_materials_{unlit, diffuse_transmission, pbrSpecularGlossiness} at a
-// hit, held against the extensions' own formulas.
+// models_test.cpp -- KHR_materials_{unlit, diffuse_transmission, pbrSpecularGlossiness} at a hit, compared with the
+// formulas of the extensions.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using test::texel;
 
 const Vec3f kUp{0, 0, 1};
 
-/// Lanes red, green, blue, grey: a spectrum shows its colour.
+/// Wavelengths with the lanes red, green, blue and grey, so that spectra show their colour.
 Wavelengths wavelengths() {
     Wavelengths w;
     w.red = {1, 0, 0, 1 / 3.f};
@@ -65,7 +65,7 @@ TEST_CASE("diffuse transmission: metals and KHR_materials_transmission come firs
     m.metallic = 0.25f;
     m.specular = 0;
     m.transmission = 0.4f;
-    m.roughness = 0;  // the clear lobe is a delta, and not in evaluate()
+    m.roughness = 0;  // the clear lobe is a delta and not part of evaluate()
     m.diffuse_transmission = 0.3f;
     const Bsdf b = shaded(m, {}, {0, 0, 1});
     const float c = 0.8f / kPi, diffuse = 0.75f * 0.6f;
@@ -85,7 +85,7 @@ TEST_CASE("diffuse transmission leads into a volume, and bounds nothing without 
     REQUIRE(interior(b).present);
     CHECK(interior(b).transmittance(4)[1] == doctest::Approx(0.0625));
     CHECK(std::get<GltfBsdf>(b).bounds_volume());
-    // In and out again: the factors 1 / eta^2 cancel.
+    // The factors 1 / eta^2 of entering and leaving cancel.
     const float in = f_cos(b, kUp, -kUp)[0], out = f_cos(b, -kUp, kUp)[0];
     CHECK(in * 1.5f * 1.5f == doctest::Approx(out / (1.5f * 1.5f)));
 }
@@ -98,7 +98,7 @@ TEST_CASE("specular-glossiness: c_diff, F0 and alpha of the extension") {
     m.specular_color = {0.2f, 0.5f, 1};
     m.glossiness = 0.5f;
     m.specular_glossiness_texture = slot(0);
-    m.metallic = 1;  // of the other workflow, and not looked at
+    m.metallic = 1;  // belongs to the other workflow, ignored
     m.transmission = 1;
     const Rgb f0{0.2f, 0.5f * 128 / 255, 0.2f};
     const auto b = std::get<GltfBsdf>(shaded(m, textures, kUp));
@@ -111,7 +111,7 @@ TEST_CASE("specular-glossiness: c_diff, F0 and alpha of the extension") {
     CHECK(b.diffuse_albedo == doctest::Approx((diffuse.x + diffuse.y + diffuse.z) / 3));
     const Rgb seen = albedo({"m", m, {}, false}, textures, hit_from(kUp));
     expect({seen.x, seen.y, seen.z, 0}, diffuse + f0);
-    // Without gloss or F0 a Lambert surface under a Fresnel that begins at 0.
+    // Without gloss and F0: Lambertian under a Fresnel curve that starts at 0.
     GltfMaterial paint = m;
     paint.specular_glossiness_texture = {};
     paint.specular_color = {0, 0, 0};
@@ -144,7 +144,7 @@ TEST_CASE("unlit: shines with factor x texture x vertex colour, and reflects not
     m.unlit = true;
     m.base_color = {0.5f, 1, 1};
     m.base_color_texture = slot(0);
-    m.emissive = {9, 9, 9};  // of the lit model, and not looked at
+    m.emissive = {9, 9, 9};  // belongs to the lit model, ignored
     m.alpha_mode = GltfMaterial::AlphaMode::blend;
     const Material material{"m", m, {}, false};
     CHECK(emits(material));

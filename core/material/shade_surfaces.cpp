@@ -1,4 +1,4 @@
-// shade_surfaces.cpp -- factors times textures at a hit, and the simplest BSDF that has it all.
+// shade_surfaces.cpp -- evaluates factors times textures at a hit, and chooses the simplest sufficient BSDF.
 #include "material/shade_surfaces.h"
 
 namespace dg {
@@ -10,7 +10,7 @@ Rgb times_texture(Rgb factor, const TextureSlot& slot, const Textures& textures,
     return slot.used() ? factor * rgb(read(slot, textures, hit)) : factor;
 }
 
-/// A colour or a spectrum times an RGB factor; never more than 1.
+/// A colour or a spectrum times an RGB factor, at most 1.
 Spectrum share(const SpectralColor& c, Rgb factor, const Wavelengths& wavelengths) {
     if (!c.sampled) return wavelengths.reflectance(clamped(c.rgb * factor));
     const Spectrum measured = c.sampled->at(wavelengths.nm);
@@ -25,7 +25,7 @@ Spectrum reflectance_of(const DiffuseMaterial& m, const Textures& textures, cons
 
 bool is_white(const SpectralColor& c) { return !c.sampled && c.rgb == Rgb{1, 1, 1}; }
 
-/// The direction along u, across the mapped normal. The tangent was made for the normal of the mesh.
+/// The direction of u, perpendicular to the mapped normal; the tangent belongs to the normal of the mesh.
 Vec3f tangent_across(const SurfaceHit& hit) {
     const Vec3f t = hit.tangent - hit.ns * dot(hit.tangent, hit.ns);
     const float l2 = length_squared(t);
@@ -35,7 +35,7 @@ Vec3f tangent_across(const SurfaceHit& hit) {
 struct Alphas {
     float u, v;
 };
-/// `clear`: of glass, which is read at the point itself (material_read.h).
+/// `clear`: for glass, with unfiltered lookups (material_read.h).
 Alphas read_alphas(const Roughness& a, bool clear, const Textures& textures, const SurfaceHit& hit) {
     if (!a.texture.used()) return {a.u, a.v};
     const Texture::Texel t = clear ? read_point(a.texture, textures, hit) : read(a.texture, textures, hit);
@@ -47,7 +47,7 @@ Facets read_facets(const Roughness& a, bool clear, const Textures& textures, con
     return {hit.ns, tangent_across(hit), alphas.u, alphas.v, a.distribution};
 }
 
-/// `outside`: index of what lies above the metal.
+/// `outside`: index above the metal.
 MetalReflectance metal_of(const ConductorMaterial& m, float outside, const Textures& textures, const SurfaceHit& hit,
                           const Wavelengths& wavelengths) {
     const Rgb factor = times_texture({1, 1, 1}, m.reflectance_texture, textures, hit);
@@ -141,7 +141,7 @@ Rgb albedo_of(const DiffuseMaterial& m, const Textures& textures, const SurfaceH
 
 namespace {
 
-/// Red, green and blue: near the middles of the primaries.
+/// Wavelengths of red, green and blue, near the centers of the primaries.
 constexpr float kPrimaries[3] = {610, 550, 465};
 
 Rgb at_primaries(const SpectralColor& c) {

@@ -20,7 +20,7 @@ const SrgbSums& srgb_sums() {
         SrgbSums s;
         for (int i = 0; i < 256; ++i)
             s.light[i] = static_cast<std::uint16_t>(std::lround(kDecode.srgb[i] * SrgbSums::kOne));
-        // The boundary lies halfway in light, not in code: then means keep their light.
+        // Rounds in linear light rather than in code values, so that means preserve light.
         int code = 0;
         for (int sum = 0; sum <= 4 * SrgbSums::kOne; ++sum) {
             while (code < 255 && sum > 2 * (s.light[code] + s.light[code + 1])) ++code;

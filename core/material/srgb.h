@@ -1,21 +1,21 @@
-// srgb.h -- 8-bit codes and the light they stand for. Source: IEC 61966-2-1.
+// srgb.h -- conversion between 8-bit codes and linear light. Source: IEC 61966-2-1.
 #pragma once
 #include <array>
 #include <cstdint>
 
 namespace dg {
 
-/// Light of the 256 codes, and the linear codes beside it.
+/// Linear light of the 256 sRGB codes and of the 256 linear codes.
 struct Decode {
     std::array<float, 256> srgb, linear;
     Decode();
 };
 extern const Decode kDecode;
 
-/// The code whose light is nearest to v (0 .. 1).
+/// The code with the light nearest to v (0 .. 1).
 std::uint8_t srgb_code(float v);
 
-/// For means of four codes in whole numbers: the light of each, and the code of a sum of four.
+/// Integer tables for means of four codes: the light of each code, and the code of a sum of four.
 struct SrgbSums {
     static constexpr int kOne = 16383;  // light of code 255; the darkest codes are 5 apart
     std::array<std::uint16_t, 256> light;

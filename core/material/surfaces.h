@@ -1,4 +1,4 @@
-// surfaces.h -- kinds of surfaces: what renderers for research and Python have, glTF's aside.
+// surfaces.h -- kinds of surfaces other than glTF's, as in research renderers.
 #pragma once
 #include <cstdint>
 
@@ -12,22 +12,22 @@ namespace dg {
 struct Material;
 struct MaterialChange;
 
-/// Alpha of slopes along u and along v (of GGX: roughness squared); both < 1e-3: smooth.
+/// Alpha along u and v (for GGX: roughness squared); both < 1e-3: smooth.
 struct Roughness {
     float u = 0, v = 0;
     TextureSlot texture;   // R is a factor on u, G on v
     Distribution distribution = Distribution::ggx;
 
-    Roughness(float alpha = 0) : u(alpha), v(alpha) {}  // NOLINT: a number is one
+    Roughness(float alpha = 0) : u(alpha), v(alpha) {}  // NOLINT: implicit
     Roughness(float u, float v, TextureSlot texture = {}, Distribution distribution = Distribution::ggx)
         : u(u), v(v), texture(texture), distribution(distribution) {}
-    /// The same everywhere and in all directions.
+    /// Whether it is constant and isotropic.
     bool plain() const { return u == v && !texture.used(); }
     bool may_be_smooth() const { return texture.used() || (u < kSmoothAlpha && v < kSmoothAlpha); }
     float widest() const { return std::max(u, v); }
 };
 
-/// Lambert on both sides, for light that is reflected and light that passes.
+/// Two-sided Lambertian reflection and transmission.
 struct DiffuseMaterial {
     SpectralColor reflectance{0.5f, 0.5f, 0.5f};
     TextureSlot reflectance_texture = {};
@@ -35,8 +35,8 @@ struct DiffuseMaterial {
     TextureSlot transmittance_texture = {};
 };
 
-/// Microfacets, both sides, whose reflectance is `reflectance` at every angle, or with `fresnel` that times the
-/// Fresnel reflectance of the index eta + i k.
+/// Two-sided microfacets with the constant reflectance `reflectance`, or with `fresnel` its product with the Fresnel
+/// reflectance of the index eta + i k.
 struct ConductorMaterial {
     SpectralColor reflectance{1, 1, 1};
     Roughness alpha{0.1f};
@@ -49,17 +49,17 @@ struct ConductorMaterial {
 struct DielectricMaterial {
     float ior = 1.5f;
     Roughness alpha = {};
-    SpectralColor tint{1, 1, 1};   // multiplies transmission
+    SpectralColor tint{1, 1, 1};   // factor on transmission
     float dispersion = 0;          // 20 / Abbe number (KHR_materials_dispersion); `ior` is n_d
-    SharedSpectrum ior_by_wavelength = {};   // in place of both
+    SharedSpectrum ior_by_wavelength = {};   // replaces ior and dispersion
     SpectralColor reflection_tint{1, 1, 1};
-    bool thin = false;             // a pane: nothing is bent
+    bool thin = false;             // a pane without refraction
     bool energy_compensation = false;
 };
 
 /// A clear dielectric coat over a diffuse surface or a metal.
 struct CoatedMaterial {
-    bool metal = false;            // which of the two lies below
+    bool metal = false;            // the base is metal; false: diffuse
     DiffuseMaterial diffuse = {};
     ConductorMaterial conductor = {};
     float ior = 1.5f;
@@ -67,21 +67,21 @@ struct CoatedMaterial {
     SpectralColor specular_tint{1, 1, 1};
     float thickness = 0;           // m
     SpectralColor absorption = {}; // 1/m
-    bool nonlinear = true;         // colours saturate by light between coat and base
+    bool nonlinear = true;         // colours saturate by inter-reflections of coat and base
     bool energy_compensation = true;
 };
 
-/// A part of a mixture where the scene has it; changes over time if `change` is set.
+/// Pointers to a part of a mixture in the scene; animated if `change` is set.
 struct MixPart {
     const Material* still = nullptr;
     const MaterialChange* change = nullptr;
-    /// With every number at its most.
+    /// The part with every number at its maximum over time.
     const Material& most() const;
-    /// Where it is says nothing of what it is.
+    /// Always equal, since pointers are not part of a material's value.
     friend bool operator==(const MixPart&, const MixPart&) { return true; }
 };
 
-/// Two materials, each of which covers a share of every point.
+/// A mixture of two materials by coverage.
 struct MixMaterial {
     std::uint32_t first = 0, second = 0;   // indices of materials before this one
     float amount = 0.5f;                   // share of the second
@@ -91,7 +91,7 @@ struct MixMaterial {
     static constexpr int kMostNested = 8;
 };
 
-/// Invisible: only media change there.
+/// An invisible boundary between media.
 struct BoundaryMaterial {};
 
 }  // namespace dg

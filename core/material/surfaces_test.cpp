@@ -50,7 +50,7 @@ TEST_CASE("diffuse: factor x texture x vertex colour on this side, factor x text
     m.transmittance_texture = slot(1);
     check_spectrum(pi_f(kUp), wavelengths().reflectance(r));
     check_spectrum(pi_f(-kUp), wavelengths().reflectance(t));
-    m = {{1, 1, 1}, {}, {1, 1, 1}};   // would make light
+    m = {{1, 1, 1}, {}, {1, 1, 1}};   // would gain energy
     check_spectrum(pi_f(kUp) + pi_f(-kUp), Spectrum(0.75f) + 0.25f * Spectrum(1.f));
 }
 
@@ -75,11 +75,11 @@ TEST_CASE("roughness textures: R on alpha along u, G along v; the kind of BSDF i
     CHECK(metal.facets.ggx.alpha_t == doctest::Approx(0.2));
     CHECK(metal.facets.ggx.alpha_b == doctest::Approx(0.8));
     CHECK(metal.facets.ggx.tangent == Vec3f{1, 0, 0});
-    m.alpha = {0.5f, 0.5f, slot(1)};   // grey: the same along both
+    m.alpha = {0.5f, 0.5f, slot(1)};   // grey: equal factors on both axes
     CHECK(std::get<ConductorBsdf>(shaded(made(m), textures, hit_from(kUp))).alpha == doctest::Approx(0.1));
     DielectricMaterial glass{1.5f, {0.5f, 0.5f, slot(1)}};
     CHECK(std::get<DielectricBsdf>(shaded(made(glass), textures, hit_from(kUp))).alpha == doctest::Approx(0.1));
-    CHECK(clearness(made(glass)) == Clear::volume);   // it may be smooth somewhere
+    CHECK(clearness(made(glass)) == Clear::volume);   // may be smooth at some points
     glass.thin = true;
     CHECK(clearness(made(glass)) == Clear::sheet);
     CHECK(std::get<GlassBsdf>(shaded(made(glass), textures, hit_from(kUp))).thin);
@@ -120,7 +120,7 @@ TEST_CASE("metals under a coat have the index relative to it") {
     m.metal = true;
     m.conductor.fresnel = true;
     m.conductor.alpha = 0;
-    m.conductor.eta = {1.5f, 1.5f, 1.5f};   // as the coat: it reflects nothing more
+    m.conductor.eta = {1.5f, 1.5f, 1.5f};   // equal to the coat's index: no reflection
     const auto s = sample(shaded(made(m), {}, hit_from(kUp)), kUp, 0.5f, {0.5f, 0.5f});
     REQUIRE(s);
     CHECK(s->weight[0] == doctest::Approx(0.04));
@@ -188,7 +188,7 @@ TEST_CASE("a mixture is one of its parts, by the hit's choice and what is there 
     std::get<MixMaterial>(all[3].kind).amount_texture = slot(0);
     CHECK(shares(3)[1] == doctest::Approx(0.25 * 128 / 255).epsilon(0.02));
     std::get<MixMaterial>(all[3].kind).amount_texture = {};
-    // Half of the glass is not there: 0.125 of it stops a ray, against 0.75 of the paint.
+    // Half of the glass is cut out: glass stops 0.125 of the rays, paint 0.75.
     all[1].opacity = 0.5f;
     CHECK(has_cutout(all[4], textures));
     CHECK(opacity(all[3], textures, hit_from(kUp).uv, 1) == doctest::Approx(0.875));

@@ -1,4 +1,4 @@
-// texture.cpp -- lookups: level, wrapping, bilinear weights, sRGB decoding.
+// texture.cpp -- texture lookups: level, wrapping, bilinear weights, sRGB decoding.
 #include "material/texture.h"
 
 #include <cmath>
@@ -9,14 +9,13 @@
 namespace dg {
 namespace {
 
-/// One axis: two neighbours and the weight of the second.
+/// Two neighbours along an axis and the weight of the second.
 struct Tap {
     int low, high;
     float t;
 };
 
-/// [0,1] from any coordinate. Every comparison is false for NaN, so NaN and infinity end
-/// as 0.
+/// Wraps a coordinate to [0,1]. Comparisons are false for NaN, so NaN and infinity give 0.
 float wrapped(float u, Wrap wrap) {
     if (wrap == Wrap::clamp) return u > 0 ? std::min(u, 1.f) : 0.f;
     if (wrap == Wrap::repeat) {
@@ -34,12 +33,11 @@ Tap tap(float coordinate, int size, Wrap wrap, TextureFilter filter) {
         const int i = std::min(static_cast<int>(u), size - 1);
         return {i, i, 0};
     }
-    // Texel centres lie at i + 1/2; u + 1/2 >= 0, so that truncation is the floor.
+    // Texel centers are at i + 1/2. As u + 1/2 >= 0, truncation is the floor.
     const int high = std::min(static_cast<int>(u + 0.5f), size);
     const int low = high - 1;
     const float t = u - 0.5f - static_cast<float>(low);
-    // Across the edge: repeat takes the other side, mirror and clamp the same texel
-    // again.
+    // At the edge, repeat uses the opposite side; mirror and clamp use the same texel again.
     const bool repeat = wrap == Wrap::repeat;
     return {low >= 0 ? low
             : repeat ? size - 1
@@ -50,7 +48,7 @@ Tap tap(float coordinate, int size, Wrap wrap, TextureFilter filter) {
             t};
 }
 
-// How much longer than wide a footprint may be: docs/textures.md.
+// Largest aspect ratio of a footprint: docs/textures.md.
 constexpr float kAnisotropy = 4;
 
 using Lanes = float __attribute__((vector_size(16)));  // r, g, b, a
@@ -88,7 +86,7 @@ Texture::Texel interpolate(const T* pixels, int width, Tap u, Tap v,
     return {t[0], t[1], t[2], t[3]};
 }
 
-/// One level of a texture.
+/// A level of a texture.
 template <typename T>
 struct Level {
     const T* pixels;
@@ -168,8 +166,8 @@ Texture::Texel Texture::lookup(Vec2f uv, const UvFootprint& footprint) const {
     return read(*this, [&](const auto& p) { return minified(*this, p, uv, l); });
 }
 
-// The shorter axis decides, so that nothing is blurred along it; but a footprint longer than
-// kAnisotropy times its width is widened, as the samples of a pixel could not fill it.
+// The shorter axis of the footprint determines the level, to avoid blur along it. Footprints longer than kAnisotropy
+// times their width are widened, as the samples of a pixel could not cover them.
 float Texture::level(const UvFootprint& f) const {
     const auto squared = [&](Vec2f axis) {
         return length_squared(Vec2f{axis.x * float(width), axis.y * float(height)});

@@ -14,33 +14,31 @@ namespace dg {
 enum class Wrap { repeat, mirror, clamp };
 enum class TextureFilter { linear, nearest };
 
-/// Where a texel is smaller than the footprint (the minFilter of glTF): how one level of the
-/// pyramid is read, and which levels are.
+/// Minification filter of glTF: interpolation inside a pyramid level and between levels.
 struct MinFilter {
     TextureFilter within = TextureFilter::linear;
     enum class Mip { none, nearest, linear } between = Mip::linear;
 };
 
-/// 8-bit (srgb or linear) or float pixels; row 0 is the top row, as in glTF: uv (0,0) is
-/// its left corner.
+/// An image with 8-bit (sRGB or linear) or float pixels. Row 0 is the top row; uv (0,0) is its left corner, as in glTF.
 struct Texture {
     std::string name;
     int width = 0, height = 0, channels = 0;  // channels 1..4
     std::variant<SharedArray<std::uint8_t>, SharedArray<float>> pixels;
     bool srgb = false;  // decode the first three channels on lookup (8-bit only)
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-    TextureFilter filter = TextureFilter::linear;  // of magnified texels
+    TextureFilter filter = TextureFilter::linear;  // magnification filter
     MinFilter min_filter = {};
-    std::shared_ptr<const Pyramid> pyramid = {};  // null: every footprint reads full resolution
+    std::shared_ptr<const Pyramid> pyramid = {};  // null: lookups use the full resolution
 
     struct Texel {
         float r, g, b, a;
     };  // missing channels: grey r=g=b for 1 and 2, a = 1
-    /// Any uv, also NaN or infinite (those read as 0). An empty texture is white.
+    /// Lookup at any uv; NaN and infinity count as 0. An empty texture is white.
     Texel lookup(Vec2f uv) const;
-    /// The mean over a footprint, by level of the pyramid.
+    /// Filtered lookup over a footprint.
     Texel lookup(Vec2f uv, const UvFootprint& footprint) const;
-    /// log2 of the texels that the footprint is wide; 0 or less: magnified.
+    /// log2 of the footprint's width in texels; 0 or less: magnified.
     float level(const UvFootprint& footprint) const;
 
     /// Throws Error if the pixels are not width x height x channels, or not finite.

@@ -40,7 +40,7 @@ TEST_CASE("row 0 is the top row and uv (0,0) its left corner") {
     CHECK(t.lookup({1, 0}).r == 2);
     CHECK(t.lookup({0, 1}).r == 3);
     CHECK(t.lookup({1, 1}).r == 4);
-    CHECK(t.lookup({0.25f, 0.25f}).r == 1);  // a texel's centre
+    CHECK(t.lookup({0.25f, 0.25f}).r == 1);  // center of a texel
     CHECK(t.lookup({0.5f, 0.5f}).r == doctest::Approx(2.5));
     CHECK(t.lookup({0.375f, 0.25f}).r == doctest::Approx(1.25));
     CHECK(t.lookup({0.25f, 0.625f}).r == doctest::Approx(2.5));

@@ -1,11 +1,9 @@
-// thin_film.h -- interference in a film on a surface, exact at each wavelength of the
-// path. The film is clear and the base has a real index, so the sum over all bounces in
-// the film is Airy's: R = (a^2 + b^2 + 2 a b cos d) / (1 + a^2 b^2 + 2 a b cos d) with the
-// amplitudes a, b of its two faces and d = 4 pi n thickness cos / wavelength, once for
-// each polarisation. The signs of a and b carry the jumps of phase. Sources: Born and
-// Wolf, 7.6.1; Belcour and Barla 2017, A Practical Extension to Microfacet Theory for the
-// Modeling of Varying Iridescence, eq. 2-4. Without a film (thickness 0, or the index of
-// what lies above) this is Fresnel's law of the bare base.
+// thin_film.h -- thin-film interference, exact at each wavelength of the path. The film is clear and the base has a
+// real index, so the sum over all bounces in the film is Airy's formula: R = (a^2 + b^2 + 2 a b cos d) / (1 + a^2 b^2 +
+// 2 a b cos d) for each polarisation, with the amplitudes a, b of the two faces and d = 4 pi n thickness cos /
+// wavelength. The signs of a and b account for phase jumps. Sources: Born and Wolf, 7.6.1; Belcour and Barla 2017, A
+// Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence, eq. 2-4. For a thickness of 0, or a
+// film with the index of the medium above, this is the Fresnel reflectance of the base.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -18,8 +16,8 @@ inline Spectrum abs(Spectrum a) {
     return {std::abs(a[0]), std::abs(a[1]), std::abs(a[2]), std::abs(a[3])};
 }
 
-/// Index of a clear base that reflects f0 in air at normal incidence, as
-/// KHR_materials_iridescence derives it for metals too.
+/// Index of a clear base with the reflectance f0 in air at normal incidence; KHR_materials_iridescence uses it for
+/// metals, too.
 inline Spectrum index_of_f0(Spectrum f0) {
     for (int i = 0; i < kWavelengths; ++i) f0.set(i, std::clamp(f0[i], 0.f, 0.9999f));
     const Spectrum r = sqrt(f0);
@@ -31,7 +29,7 @@ struct ThinFilm {
     float outside = 1;                // index above the film: air, or a clear coat
     Spectrum wavelengths{550.f};      // nm
 
-    /// Share of light reflected that comes from air at the angle of cos_o.
+    /// Reflectance for light from air at the cosine cos_o.
     Spectrum reflectance(float cos_o, Spectrum base_ior) const {
         const Faces f(*this, cos_o, base_ior);
         const Spectrum d = (4 * kPi * ior * thickness * f.cos_film) / wavelengths;
@@ -39,7 +37,7 @@ struct ThinFilm {
                                2 * std::cos(d[3])};
         return 0.5f * (airy(f.s_top, f.s_base, two_cos) + airy(f.p_top, f.p_base, two_cos));
     }
-    /// The most that any thickness and wavelength reflects.
+    /// Upper bound of the reflectance over thicknesses and wavelengths.
     Spectrum envelope(float cos_o, Spectrum base_ior) const {
         const Faces f(*this, cos_o, base_ior);
         return 0.5f * (airy(std::abs(f.s_top), abs(f.s_base), 2.f) +
@@ -72,7 +70,7 @@ struct ThinFilm {
     }
     static Spectrum airy(float a, Spectrum b, Spectrum two_cos) {
         const Spectrum ab = a * b, middle = ab * two_cos;
-        // Rounding can leave 0/0 where both faces reflect everything.
+        // Rounding may cause 0/0 if both faces have a reflectance of 1.
         const Spectrum above = a * a + b * b + middle, below = 1 + ab * ab + middle;
         Spectrum r;
         for (int i = 0; i < kWavelengths; ++i)
@@ -81,8 +79,8 @@ struct ThinFilm {
     }
 };
 
-/// Smallest F0 whose Schlick curve, ending in 1, stays above the film's envelope at every
-/// angle: with it the albedo table of plain GGX bounds what a film reflects.
+/// Smallest F0 for which Schlick's curve with F90 = 1 bounds the film's reflectance at every angle. With it the albedo
+/// table of GGX bounds the albedo with a film.
 inline float schlick_bound(const ThinFilm& film, Spectrum base_ior) {
     float f0 = 0;
     for (const float c : {1.f, 0.8f, 0.65f, 0.5f, 0.4f, 0.3f, 0.2f, 0.1f}) {

@@ -1,5 +1,5 @@
-// thin_film_test.cpp -- the closed form against the sum over bounces, against the formula
-// of KHR_materials_iridescence, and in its limits.
+// thin_film_test.cpp -- the closed form against the sum over bounces, against the formula of KHR_materials_iridescence,
+// and in its limits.
 #include "material/thin_film.h"
 
 #include <doctest/doctest.h>
@@ -16,7 +16,7 @@ const Spectrum kNm{430, 510, 590, 670};
 
 using Amplitude = std::complex<double>;
 
-/// Light that leaves upward after 0, 1, 2 ... round trips, wave by wave.
+/// Reflected light as the sum of waves after 0, 1, 2 ... round trips.
 double by_bounces(bool p, double cos_o, double film, double base, double nm, double thick) {
     const auto cosine = [&](double n) {
         return std::sqrt(1 - (1 - cos_o * cos_o) / (n * n));
@@ -39,8 +39,8 @@ double by_bounces(bool p, double cos_o, double film, double base, double nm, dou
     return std::norm(sum);
 }
 
-/// I of the extension at normal incidence, where its Schlick terms are exact, with a line
-/// at one wavelength in place of the sensitivities of an eye, and all orders m.
+/// I of the extension at normal incidence, where its Schlick terms are exact, for a single wavelength instead of the
+/// eye's sensitivities, with all orders m.
 double by_khronos(double film, double base_f0, double nm, double thickness) {
     const double root = std::sqrt(base_f0), base = (1 + root) / (1 - root);
     const auto f0 = [](double t, double i) { return std::pow((t - i) / (t + i), 2); };

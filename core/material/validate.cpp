@@ -1,4 +1,4 @@
-// validate.cpp -- the one place where a material's numbers are held against their ranges.
+// validate.cpp -- range checks of material parameters.
 #include <cmath>
 
 #include "material/material.h"
