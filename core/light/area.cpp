@@ -1,4 +1,4 @@
-// area.cpp -- lights with an extent: spheres and triangles.
+// area.cpp -- area lights: spheres and triangles.
 #include "light/emitter.h"
 #include "light/emitter_check.h"
 #include "light/triangle_sampler.h"
@@ -6,10 +6,10 @@
 namespace dg {
 namespace {
 
-/// Disc that the sphere shows to `position`; both sphere functions need it.
+/// Cone of a sphere seen from `position`.
 struct VisibleDisc {
     Vec3f to_center;
-    float d2;             // squared distance of the centre
+    float d2;             // squared distance of the center
     float one_minus_cos;  // of the cone; unused inside
     bool inside;
 };
@@ -24,8 +24,8 @@ VisibleDisc visible_disc(const Sphere& sphere, Vec3f position) {
     return v;
 }
 
-/// Error of the distance along a ray that runs in the ball for twice this length: a line that is e off its place enters
-/// after sqrt(h^2 +- 2 r e) instead of h, which differs by less than 2 r e / h and than sqrt(2 r e).
+/// Error bound of the hit distance on a ball, for half the length h of the ray inside the ball. A line that is
+/// displaced by e enters at sqrt(h^2 +- 2 r e) instead of h, a difference of at most 2 r e / h and sqrt(2 r e).
 float along_ray(const Sphere& ball, float half_chord) {
     const float e = lamp_error(largest_coordinate(ball.center) + ball.radius), square = 2 * ball.radius * e;
     return std::min(square / half_chord, std::sqrt(square));
@@ -85,7 +85,7 @@ LightBounds emitter_bounds(const TriangleLight& light) {
     return b;
 }
 
-/// Uniform in the cone that the sphere fills; from inside, uniform over all directions.
+/// Uniform in the cone of the sphere; from inside, uniform over all directions.
 std::optional<EmitterSample> sample_emitter(const SphereLight& light, Vec2f u,
                                             Vec3f position) {
     const VisibleDisc v = visible_disc(light.shape, position);
@@ -97,8 +97,7 @@ std::optional<EmitterSample> sample_emitter(const SphereLight& light, Vec2f u,
         const Frame frame = Frame::from_normal(v.to_center * (1 / std::sqrt(v.d2)));
         wi = normalize(frame.to_world(warp_cone(u, v.one_minus_cos)));
     }
-    // Nearest point ahead; the squared distance of the centre from the line, without
-    // cancellation.
+    // Nearest point of the line to the center; the squared distance is computed without cancellation.
     const float along = dot(v.to_center, wi);
     const float half_chord =
         std::sqrt(std::max(0.f, r2 - length_squared(v.to_center - wi * along)));

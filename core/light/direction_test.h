@@ -1,5 +1,4 @@
-// direction_test.h -- for tests only: does a sampler of directions follow the density
-// that it claims?
+// direction_test.h -- for tests: compares samples of directions with their density.
 #pragma once
 #include <functional>
 #include <optional>
@@ -11,11 +10,10 @@
 
 namespace dg {
 
-/// Patches of equal size in (cos theta, phi) around an axis; more than one pole is never
-/// needed.
+/// Cells of equal size in (cos theta, phi) around an axis.
 struct DirectionGrid {
     Frame frame = Frame::from_normal({0, 0, 1});
-    double cos_min = -1, cos_max = 1;  // the part of the sphere that is tested
+    double cos_min = -1, cos_max = 1;  // tested part of the sphere
     int rows = 16, columns = 32;
     int cells() const { return rows * columns; }
 
@@ -37,9 +35,9 @@ struct DirectionGrid {
     double cell_solid_angle() const { return 2 * kPiD * (cos_max - cos_min) / cells(); }
 };
 
-/// p-value that `samples` draws fall as `pdf` says. The density is integrated over each
-/// cell by the midpoint rule with `sub` x `sub` points. Draws without a result count as
-/// "nowhere", whose probability is 1 - integral of the pdf.
+/// p-value of a chi-square test of `samples` draws against `pdf`. The density is integrated over each cell by the
+/// midpoint rule with `sub` x `sub` points. Draws without a result form a cell with the probability 1 - integral of the
+/// pdf.
 inline double direction_p_value(const DirectionGrid& grid,
                                 const std::function<std::optional<Vec3f>(Vec2f)>& sample,
                                 const std::function<double(Vec3f)>& pdf,

@@ -1,4 +1,4 @@
-// direction_tile.h -- the sphere of directions in tiles of the same size.
+// direction_tile.h -- divides the sphere of directions into tiles of equal solid angle.
 #pragma once
 #include <array>
 #include <cmath>
@@ -8,12 +8,12 @@
 
 namespace dg {
 
-/// Between two heights (+y up) and two azimuths.
+/// A range of heights (+y up) and azimuths.
 struct DirectionTile {
     std::array<float, 2> height{}, azimuth{};
 
     float solid_angle() const { return (height[1] - height[0]) * (azimuth[1] - azimuth[0]); }
-    /// Evenly, for u in [0, 1)^2; unit.
+    /// Uniform unit direction for u in [0, 1)^2.
     Vec3f at(Vec2f u) const {
         const float y = height[0] + (height[1] - height[0]) * u.x;
         const float phi = azimuth[0] + (azimuth[1] - azimuth[0]) * u.y;
@@ -22,7 +22,7 @@ struct DirectionTile {
     }
 };
 
-/// Nearly square ones at the horizon.
+/// Tiles that are nearly square at the horizon.
 inline std::vector<DirectionTile> direction_tiles(int across, int down) {
     std::vector<DirectionTile> tiles;
     const auto height = [&](int row) { return -std::cos(kPi * float(row) / float(down)); };

@@ -5,16 +5,16 @@
 namespace dg {
 namespace {
 
-// Nothing that is in reach gets less than this share of the mean: the estimate knows nothing of walls, nor
-// of where things are on their way.
+// Lower bound of the weight of emitters in view, as a fraction of the mean: the estimate ignores occlusion and the
+// motion of objects.
 constexpr double kLeastShare = 0.02;
 
-/// The part of a sphere that points of a ball about the eye may see: normals n with n . axis > from, since
-/// n . (x - centre) > radius for some x of the ball. The density rises from 0 there as the cosine at the
-/// emitter does for those points, so that no sample weighs much more than another.
+/// The part of a sphere that points of a ball around the eye may see: normals n with n . axis > from, since
+/// n . (x - centre) > radius for a point x of the ball. The density rises from 0 at the boundary like the cosine at the
+/// emitter for those points, which bounds sample weights.
 struct Side {
     Vec3f axis{0, 0, 1};
-    float from = 1;   // 1: the eye is inside, and sees none of it from outside
+    float from = 1;   // 1: the eye is inside, so that no part is visible
     Side(const Sphere& sphere, const Viewpoint& view) {
         const Vec3f to = view.eye - sphere.center;
         const float d = length(to);
@@ -23,12 +23,12 @@ struct Side {
         from = (sphere.radius - view.radius) / d;
     }
     Vec3f sample(Vec2f u) const {
-        // A number stands for its 2^-24 of the line: at its very begin the density is 0.
+        // A random number represents an interval of 2^-24; the density is 0 at the start of the first.
         const float z = from > -1 ? from + (1 - from) * std::sqrt(u.x + 0x1p-25f) : 1 - 2 * u.x;
         const float r = std::sqrt(std::max(0.f, 1 - z * z)), phi = 2 * kPi * u.y;
         return Frame::from_normal(axis).to_world({r * std::cos(phi), r * std::sin(phi), z});
     }
-    /// Per unit area of the unit sphere.
+    /// Density per unit area of the unit sphere.
     float pdf(Vec3f n) const {
         if (from >= 1) return 0;
         if (from <= -1) return 1 / (4 * kPi);
@@ -38,7 +38,7 @@ struct Side {
 
 }  // namespace
 
-// Where it faces is asked of one that stays, and lies flat.
+// The orientation is tested only for static flat lights.
 double illuminance_estimate(const LightBounds& b, bool moves, const ViewCone& view) {
     const Vec3f center = (b.min + b.max) * 0.5f;
     const float radius = 0.5f * length(b.max - b.min);
@@ -106,7 +106,7 @@ void EmissionSampler::add(std::int32_t light, double weight, std::vector<double>
                                                             : TriangleSampler());
 }
 
-/// The bright spots of the sky within reach, and what they bring (lux).
+/// Bright spots of the sky in the field of view, and their illuminance (lux).
 double EmissionSampler::sky_weight(std::span<const ViewCone> views) {
     if (!lights_->has_environment()) return 0;
     sky_ = HotSky(*lights_->environment(), views);

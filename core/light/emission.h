@@ -1,5 +1,5 @@
-// emission.h -- points on the emitters that a lens sees, for light paths that begin there. Delta lights are
-// not among them: no camera sees one.
+// emission.h -- samples points on the emitters that a lens sees, for light paths directly to the lens. Excludes delta
+// lights, which are invisible to cameras.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -14,39 +14,38 @@
 
 namespace dg {
 
-/// A point that shines, or a direction from which light comes from infinity.
+/// A point on an emitter, or a direction toward an emitter at infinity.
 struct EmissionPoint {
     static constexpr std::int32_t kSky = LightSet::kEnvironment;
     std::int32_t light = kSky;   // index in LightSet::lights()
-    Vec3f position{};            // m; of the sky the unit direction toward it
-    Vec3f normal{};              // unit, of the front side; none of the sky
-    float pdf = 0;               // with the choice of the emitter: per m2; of the sky per sr
-    Vec2f barycentric{};         // of a triangle
+    Vec3f position{};            // m; for the sky, the unit direction toward it
+    Vec3f normal{};              // unit, of the front side; not set for the sky
+    float pdf = 0;               // includes the choice of the emitter; 1/m2, for the sky 1/sr
+    Vec2f barycentric{};         // for triangles
 };
 
-/// Evenly on it; nothing where it has no area.
+/// Uniform point on a triangle; empty if it has no area.
 std::optional<EmissionPoint> point_on(const TriangleSampler& triangle, Vec2f u);
-/// On that side which some point of the viewpoint may see; nothing from inside.
+/// Point on the side of a sphere that the viewpoint may see; empty from inside.
 std::optional<EmissionPoint> point_on(const Sphere& sphere, Vec2f u, const Viewpoint& view);
 
-/// Illuminance by a light at a viewpoint (lux) if the view has it in reach, as far as its bounds tell.
+/// Estimated illuminance by a light at a viewpoint (lux), from its bounds; 0 outside the view.
 double illuminance_estimate(const LightBounds& bounds, bool moves, const ViewCone& view);
 
-/// Which emitter: by an estimate of the illuminance that it brings to the lens from within the frame's
-/// reach. Where on it: evenly on triangles, on that side of a sphere which some point of the lens may see,
-/// and by luminance in the bright spots of a sky. The choice is the same at all times; the point is that of
-/// the emitter at the time.
+/// Chooses an emitter by its estimated illuminance at the lens from inside the field of view. Samples points uniformly
+/// on triangles, on the side of a sphere that the lens may see, and by luminance in the bright spots of a sky. The
+/// probabilities of emitters do not depend on time; the point is on the emitter at that time.
 class EmissionSampler {
   public:
     EmissionSampler() = default;
-    /// `views`: at some moments, one at least, between which the camera hardly moves. `lights` outlives this.
+    /// `views`: at least one, at times between which the camera moves little. `lights` must outlive this.
     EmissionSampler(const LightSet& lights, std::span<const ViewCone> views, bool with_sky = true);
 
-    /// Nothing to be sampled.
+    /// No emitter to sample.
     bool empty() const { return choice_.empty(); }
     std::optional<EmissionPoint> sample(float u_select, Vec2f u, float time,
                                         const Viewpoint& view) const;
-    /// EmissionPoint::pdf, had sample() given this point.
+    /// EmissionPoint::pdf with which sample() returns this point.
     float pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float time) const;
     float pdf_sphere(std::uint32_t sphere, Vec3f position, float time, const Viewpoint& view) const;
     float pdf_sky(Vec3f direction, float time) const;
@@ -63,9 +62,9 @@ class EmissionSampler {
 
     const LightSet* lights_ = nullptr;
     DiscreteDistribution choice_;
-    std::vector<std::int32_t> chosen_;          // light by entry, or kSky
-    std::vector<TriangleSampler> triangles_;    // by entry; area 0: none, or it moves
-    std::vector<std::int32_t> entry_of_;        // by light; -1: never chosen
+    std::vector<std::int32_t> chosen_;          // light of each entry, or kSky
+    std::vector<TriangleSampler> triangles_;    // per entry; area 0: no triangle, or it moves
+    std::vector<std::int32_t> entry_of_;        // per light; -1: never chosen
     HotSky sky_;
     float sky_pmf_ = 0;
 };

@@ -1,5 +1,5 @@
-// emission_aim.h -- balls that light is sent to on purpose: what bends or mirrors light is often small,
-// and what it does with the light of a lamp (a caustic) is found by light paths that meet it.
+// emission_aim.h -- aims light paths at bounding spheres of specular objects, which are often small, so that more light
+// paths find their caustics.
 #pragma once
 #include <vector>
 
@@ -15,7 +15,7 @@ class EmissionAim {
     explicit EmissionAim(std::vector<Sphere> balls) : balls_(std::move(balls)) {}
     bool empty() const { return balls_.empty(); }
 
-    /// A direction from a point to one of the balls, all of them alike; u.x also chooses which.
+    /// Samples a direction from a point to a sphere; spheres are equally likely, and u.x also chooses the sphere.
     Vec3f direction(Vec3f from, Vec2f u) const {
         const Sphere& ball = choose(u.x);
         const Vec3f to = ball.center - from;
@@ -23,7 +23,7 @@ class EmissionAim {
         if (spread >= 2) return warp_sphere(u);
         return normalize(Frame::from_normal(normalize(to)).to_world(warp_cone(u, spread)));
     }
-    /// Its density, per sr.
+    /// Density of direction samples, 1/sr.
     float direction_pdf(Vec3f from, Vec3f w) const {
         float sum = 0;
         for (const Sphere& ball : balls_) {
@@ -33,13 +33,13 @@ class EmissionAim {
         }
         return balls_.empty() ? 0 : sum / float(balls_.size());
     }
-    /// A point of the disc that one of the balls shows to light along `w`.
+    /// Samples a point on the disc of a sphere perpendicular to the direction `w`.
     Vec3f disc_point(Vec3f w, Vec2f u) const {
         const Sphere& ball = choose(u.x);
         const Vec2f d = warp_disk(u) * ball.radius;
         return ball.center + Frame::from_normal(w).to_world({d.x, d.y, 0});
     }
-    /// Its density per m2 across the ray that goes along `w` through a point.
+    /// Density of disc samples per m2 perpendicular to the ray through a point along `w`.
     float disc_pdf(Vec3f point, Vec3f w) const {
         float sum = 0;
         for (const Sphere& ball : balls_) {
@@ -56,12 +56,12 @@ class EmissionAim {
         u = std::clamp(scaled - float(i), 0.f, kBelowOne);
         return balls_[i];
     }
-    /// 1 - cos of the cone that the ball fills; 2 from inside.
+    /// 1 - cos of the cone that the sphere subtends; 2 from inside.
     static float one_minus_cos(const Sphere& ball, Vec3f to) {
         const float d2 = length_squared(to), r2 = ball.radius * ball.radius;
         return d2 <= r2 ? 2 : one_minus_cos_from_sin2(r2 / d2);
     }
-    /// Whether a line along `w` meets the ball (ahead).
+    /// Whether a ray along `w` hits the sphere.
     static bool is_within(Vec3f to, Vec3f w, const Sphere& ball, bool ahead = true) {
         const float along = dot(to, w);
         if (ahead && along <= 0) return false;

@@ -8,12 +8,12 @@
 namespace dg {
 namespace {
 
-// Share of a light's rays that go to the balls of the aim, if there are any.
+// Share of a light's rays that are aimed at the spheres of the aim, if there are any.
 constexpr float kAimed = 0.5f;
-// Chances of lights follow their power by so much; the rest is even.
+// Share of the choice of lights that is proportional to power; the rest is uniform.
 constexpr double kByPower = 0.9;
 
-/// lm; of a lamp with a profile, whose bounds have the peak of it.
+/// Power of a lamp with a profile, lm; its bounds contain the profile's peak.
 double power_of(const LightProfile& profile, const Light& light, const LightBounds& b) {
     const bool surface = std::holds_alternative<TriangleLight>(light);
     const Rgb share = surface ? profile.facing_mean() : profile.mean();
@@ -21,18 +21,18 @@ double power_of(const LightProfile& profile, const Light& light, const LightBoun
     return profile.peak() > 0 ? all * b.intensity * max_component(share) / profile.peak() : 0;
 }
 
-/// lm; the largest ever. Lights from infinity fall on the disc that the scene shows them.
+/// Largest power over time, lm. Lights from infinity illuminate the disc of the scene's bounding sphere.
 double power_of(const LightSet& lights, std::size_t light, float scene_radius) {
     const double disc = kPiD * double(scene_radius) * scene_radius;
     if (const float lux = lights.infinite_weight(light); lux > 0) return lux * disc;
     const LightBounds b = lights.bounds_of(light);
     if (const LightProfile* profile = lights.profile_of(light)) return power_of(*profile, lights.lights()[light], b);
     if (b.spread >= kPi) return 4 * kPiD * b.intensity;
-    if (b.falloff > 0) return (b.two_sided ? 2 : 1) * kPiD * b.intensity;   // cosine
+    if (b.falloff > 0) return (b.two_sided ? 2 : 1) * kPiD * b.intensity;   // cosine emission
     return 2 * kPiD * (1 - std::cos(double(b.spread))) * b.intensity;
 }
 
-/// Uniform over directions within a cone, or to the balls of the aim. All around: spread 2.
+/// Directions uniform in a cone, or aimed at the spheres of the aim. The whole sphere has the spread 2.
 struct ConeEmission {
     const EmissionAim& aim;
     Vec3f from, axis;
@@ -51,7 +51,8 @@ struct ConeEmission {
     }
 };
 
-/// The same from a surface, by the cosine; pdf over the cosine. 0 behind a one-sided one.
+/// Directions from a surface with cosine distribution, or aimed. pdf() is the density over the cosine, and 0 behind a
+/// one-sided surface.
 struct SurfaceEmission {
     const EmissionAim& aim;
     Vec3f from, normal;
@@ -80,7 +81,7 @@ SurfaceEmission surface(const EmissionAim& aim, const TriangleSampler& t, Vec3f 
 SurfaceEmission surface(const EmissionAim& aim, const SphereLight& s, Vec3f from) {
     return {aim, from, normalize(from - s.shape.center)};
 }
-/// 1 - cos, a little wider than the profile, so that nothing is lost at its edge by rounding.
+/// 1 - cos of the profile's cone, slightly enlarged against rounding at its edge.
 float spread_of(float angle) {
     return float(std::min(2.0, 1 - std::cos(std::min(kPiD, angle + 1e-3))));
 }
@@ -97,13 +98,13 @@ float sphere_area_pdf(const SphereLight& s) {
     return 1 / (4 * kPi * s.shape.radius * s.shape.radius);
 }
 
-/// Rays from infinity: across the disc of everything lit, or those of the aim.
+/// Origins of rays from infinity: on the disc of all lit surfaces, or aimed.
 struct DiscEmission {
     const EmissionReach& reach;
     Vec3f w;
 
     float aimed() const { return reach.aim.empty() ? 0 : kAimed; }
-    /// The origin, before everything that is in the way.
+    /// Samples an origin in front of all occluders.
     Vec3f sample(Vec2f u) const {
         Vec3f p;
         if (u.x < aimed()) {
@@ -123,7 +124,7 @@ struct DiscEmission {
     }
 };
 
-// One emitter's ray, without the chance of the light.
+// Samples a ray of an emitter; the density excludes the choice of the light.
 
 bool leave(const EmissionReach& reach, const TriangleLight& light, Vec2f u_point, Vec2f u,
            EmissionRay& ray) {
@@ -178,7 +179,7 @@ bool leave(const EmissionReach& reach, const DirectionalLight& light, Vec2f u_po
     return true;
 }
 
-// Its density, where it is seen from `position`.
+// Density of a ray of an emitter to `position`.
 
 float leaving_pdf(const EmissionReach& reach, const TriangleLight& light, Vec3f position, Vec3f wi,
                   float distance) {

@@ -1,9 +1,9 @@
-// emission_ray.h -- rays that leave emitters: where paths from the light begin.
+// emission_ray.h -- samples rays that leave emitters, as the start of light paths.
 //
-// A light is chosen by its power. Densities are those of a ray, per m2 sr: per m2 of the emitter, per sr,
-// over the cosine there. Light from infinity has them per m2 across the ray. A delta light lacks a factor
-// that it lacks in light sampling too: a point is one, so the density is per sr, and that of a direction
-// per m2, also where it is one of many that a directional light draws.
+// Lights are chosen by power. Densities are densities of rays, 1/(m2 sr): per m2 of the emitter and per sr, over the
+// cosine at the emitter. For light from infinity the area is perpendicular to the ray. Delta lights lack the same
+// factor as in light sampling: the density is per sr for point lights and per m2 for directional lights, also for
+// directional lights with a disc of directions.
 #pragma once
 #include "light/emission_aim.h"
 #include "light/light.h"
@@ -12,17 +12,17 @@ namespace dg {
 
 struct EmissionRay {
     std::int32_t light = -1;  // index in lights(), or LightSet::kEnvironment
-    Vec3f origin, direction;  // from infinity: before everything that the ray may meet
-    Vec2f barycentric{};      // of a triangle
-    Rgb value;                // cd/m2, cd or lux; of a triangle the mean
+    Vec3f origin, direction;  // for light from infinity, the origin is in front of the scene
+    Vec2f barycentric{};      // for triangles
+    Rgb value;                // cd/m2, cd or lux; for triangles the mean
     float pdf = 0;
 };
 
-/// Where light may go.
+/// Targets of emitted light.
 struct EmissionReach {
-    Sphere lit;         // holds what light may fall on
-    Sphere all;         // and what may stop it on its way
-    EmissionAim aim{};  // where more light goes than chance would send
+    Sphere lit;         // bounds of surfaces that light may reach
+    Sphere all;         // bounds of surfaces and occluders
+    EmissionAim aim{};  // preferred targets
 };
 
 class EmissionRays {
@@ -31,12 +31,12 @@ class EmissionRays {
     /// `lights` must outlive this.
     EmissionRays(const LightSet& lights, EmissionReach reach);
 
-    /// Nothing shines, or an even sky alone: following paths from the camera finds that best.
+    /// No emitters, or only a uniform sky, which camera paths sample best.
     bool empty() const { return choice_.empty(); }
     std::optional<EmissionRay> sample(float u_light, Vec2f u_point, Vec2f u_direction,
                                       float time) const;
-    /// Density with which sample() would have sent a ray from the light, where `position` sees it along
-    /// `wi` at `distance` (m). Of a point light per m2 at that distance.
+    /// Density with which sample() returns the ray from the light to `position`, which sees the light along `wi` at
+    /// `distance` (m). For point lights, per m2 at that distance.
     float pdf(std::int32_t light, Vec3f position, Vec3f wi, float distance, float time) const;
     double power() const { return choice_.empty() ? 0 : choice_.sum(); }  // lm
 
@@ -46,10 +46,10 @@ class EmissionRays {
 
     const LightSet* lights_ = nullptr;
     EmissionReach reach_{};
-    DiscreteDistribution choice_;   // by light; the last is the environment
+    DiscreteDistribution choice_;   // per light; the last entry is the environment
 };
 
-/// Attenuation of the light of a point or spot light of finite range after `distance` m; 1 of others.
+/// Attenuation of a point or spot light of finite range after `distance` m; 1 for other lights.
 float range_attenuation(const Light& light, float distance);
 
 }  // namespace dg

@@ -1,4 +1,4 @@
-// Rays that leave emitters: their power through a closed surface, and their densities.
+// Rays that leave emitters: their total power, and their densities.
 #include "light/emission_ray.h"
 
 #include <doctest/doctest.h>
@@ -25,8 +25,7 @@ EmissionReach reach(bool aimed) {
 
 LightSet set_of(std::vector<Light> lights) { return LightSet(std::move(lights), std::nullopt); }
 
-/// cd/m2 are converted to lm as they are; the mean of value / pdf is the flux (of a lamp's red channel),
-/// and the second moment tells how sure that is.
+/// Moments of value / pdf; the mean is the flux of the red channel, lm.
 SampleMoments flux(const EmissionRays& rays, int n = 40000) {
     std::vector<double> values;
     for (int i = 0; i < n; ++i) {
@@ -45,7 +44,7 @@ TriangleLight triangle(bool two_sided) {
 }
 double area(const TriangleLight& t) { return 0.5 * length(cross(t.b - t.a, t.c - t.a)); }
 
-/// A lopsided sky with one hot texel.
+/// An asymmetric sky with one bright texel.
 Environment sky() {
     EnvironmentImage image{16, 8, std::vector<Rgb>(128, Rgb{0.5f, 0.5f, 0.5f})};
     image.pixels[16 * 2 + 5] = {300, 300, 300};
@@ -67,12 +66,12 @@ TEST_CASE("the flux of all rays is the known power of the lamp, aimed or not") {
         CHECK_FALSE(agrees(sphere, 1.04 * kPiD * 2 * 4 * kPiD * r * r));
         for (const bool both : {false, true})
             CHECK(agrees(power(triangle(both)), (both ? 2 : 1) * kPiD * 2 * area(triangle(both))));
-        // In the cone between two angles the attenuation is the square of what falls evenly in cos.
+        // Between the two cone angles the attenuation is the square of a linear function of the cosine.
         const double inner = std::cos(0.3), outer = std::cos(0.6);
         CHECK(agrees(power(SpotLight{{0, 1, 0}, {0, -1, 0}, {2, 2, 2}, 0.3f, 0.6f}),
                      2 * 2 * kPiD * (1 - inner + (inner - outer) / 3)));
         CHECK(agrees(power(DirectionalLight{{0, -1, 0}, {2, 2, 2}}), 2 * kPiD * 9));
-        // From a disc more light comes in all than onto what faces it: L 2 pi (1 - cos) to pi L sin^2.
+        // The total flux of a disc exceeds the flux onto a facing surface: L 2 pi (1 - cos) against pi L sin^2.
         for (const double angle : {0.01, 1.0, kPiD})
             CHECK(agrees(power(DirectionalLight{{0, -1, 0}, {2, 2, 2}, float(angle)}),
                          2 * 2 / (1 + std::cos(angle / 2)) * kPiD * 9));
@@ -135,7 +134,7 @@ TEST_CASE("directions from a point follow the density") {
 TEST_CASE("aimed directions have the density that they claim: integrals of several functions") {
     const LightSet set = set_of({PointLight{{0, 1, 0}, {1, 1, 1}}});
     const EmissionRays rays(set, reach(true));
-    // g and its mean over the sphere; the last is one of the balls, a cone of sin 0.4 / distance.
+    // g and its mean over the sphere; the last g is 1 in the cone of a ball, with the sine 0.4 / distance.
     const double d2 = 1.5 * 1.5 + 1, cone = 1 - std::sqrt(1 - 0.16 / d2);
     const Vec3f to_ball = normalize(kBalls[0].center - Vec3f{0, 1, 0});
     const std::function<double(Vec3f)> g[] = {
@@ -155,9 +154,9 @@ TEST_CASE("aimed directions have the density that they claim: integrals of sever
 }
 
 TEST_CASE("points and directions of lamps with an extent follow the density where they arrive") {
-    // Rays are counted by the half of the lamp that they leave and by direction; the density per m2 sr of a
-    // sphere or a triangle is even over its points unless it is aimed, so it is held against where each ray
-    // was seen from: E[f / pdf] over the rays = integral of f over points and projected directions.
+    // Rays are binned by the half of the lamp that they leave and by direction. The density of a sphere or a triangle
+    // is uniform over its points only without aim, so the test checks E[f / pdf] over the rays = integral of f over
+    // points and projected directions.
     for (const bool aimed : {false, true}) {
         const std::vector<Light> lamps{SphereLight{{{0, 1, 0}, 0.25f}, {1, 1, 1}}, triangle(false),
                                        triangle(true)};
@@ -169,7 +168,7 @@ TEST_CASE("points and directions of lamps with an extent follow the density wher
             for (int i = 0; i < kRays; ++i) {
                 const auto ray = rays.sample(0.5f, pair(2, i), pair(3, i), 0);
                 if (!ray) continue;
-                // From where it arrives the density is the one it was drawn with.
+                // pdf() at the point of arrival returns the density of the sample.
                 const Vec3f at = ray->origin + ray->direction * 2.f;
                 const float there = rays.pdf(0, at, -ray->direction, 2, 0);
                 CHECK(there == doctest::Approx(ray->pdf).epsilon(2e-3));
@@ -194,7 +193,7 @@ TEST_CASE("rays from infinity start before everything, and their density is foun
     for (const bool aimed : {false, true}) {
         const EmissionRays rays(set, reach(aimed));
         int skies = 0;
-        Vec3f mean{};   // direction of the disc's rays
+        Vec3f mean{};   // mean direction of the disc's rays
         int rays_of_disc = 0;
         for (int i = 0; i < 2000; ++i) {
             const auto ray = rays.sample(float(hash_uniform(1, i)), pair(2, i), pair(3, i), 0);
@@ -207,7 +206,7 @@ TEST_CASE("rays from infinity start before everything, and their density is foun
             CHECK(rays.pdf(ray->light, at, -ray->direction, kInfinity, 0) ==
                   doctest::Approx(ray->pdf).epsilon(1e-3));
         }
-        // Evenly over the disc: the mean of the cosine is the middle of its range.
+        // Uniform over the disc: the mean cosine is the middle of its range.
         CHECK(dot(mean / float(rays_of_disc), normalize(Vec3f{1, -2, 0})) ==
               doctest::Approx((1 + std::cos(0.4)) / 2).epsilon(0.002));
         CHECK(skies > 100);

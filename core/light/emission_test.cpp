@@ -1,5 +1,4 @@
-// emission_test.cpp -- points on emitters: densities that belong to the samples, and the light that they add
-// up to, against closed forms.
+// emission_test.cpp -- points on emitters: their densities, and their total light against closed forms.
 #include "light/emission.h"
 
 #include <doctest/doctest.h>
@@ -65,7 +64,7 @@ TEST_CASE("each emitter is chosen, and its density is that which is asked for af
         REQUIRE(again == doctest::Approx(p->pdf).epsilon(2e-3));
     }
     for (const int light : {0, 1, 2, 3}) CHECK(seen[std::size_t(light)] > 10);   // sky, ball, triangles
-    CHECK(seen[4] + seen[5] == 0);   // a point is never seen, and the last ball is dark
+    CHECK(seen[4] + seen[5] == 0);   // point lights are invisible, and the last ball is dark
 }
 
 TEST_CASE("points on emitters bring any point of the lens the light that the emitters give it") {
@@ -73,7 +72,7 @@ TEST_CASE("points on emitters bring any point of the lens the light that the emi
                                  triangle({0.3f, 0, -0.6f}, 0.05f, {20, 20, 20}, 0)};
     const LightSet lights(all, std::nullopt);
     const EmissionSampler sampler = sampler_of(lights);
-    const Vec3f x = kEye.eye + Vec3f{0.01f, -0.012f, 0.005f};   // within the lens
+    const Vec3f x = kEye.eye + Vec3f{0.01f, -0.012f, 0.005f};   // inside the lens
     double ball = 0, pane = 0;
     const int n = 200'000;
     for (int i = 0; i < n; ++i) {
@@ -85,7 +84,7 @@ TEST_CASE("points on emitters bring any point of the lens the light that the emi
         if (p->light == 0 && cosine > 0) ball += share;
         if (p->light == 1) pane += share;
     }
-    // Solid angles: of the ball's cap; of the triangle by Van Oosterom and Strackee 1983.
+    // Solid angles of the ball's cap, and of the triangle by Van Oosterom and Strackee 1983.
     const double sine = 0.1 / length(Vec3f{0, 0, -0.5f} - x);
     CHECK(ball == doctest::Approx(2 * kPiD * (1 - std::sqrt(1 - sine * sine))).epsilon(0.006));
     const auto& t = std::get<TriangleLight>(all[1]);
@@ -113,7 +112,7 @@ TEST_CASE("the side of a ball: a density that integrates to 1, and reaches all t
         }
         CHECK(total == doctest::Approx(1).epsilon(0.02));
     }
-    // From inside nothing is seen from outside.
+    // From inside a ball, its outside is not visible.
     const LightSet dome({SphereLight{{kEye.eye, 1}, {1, 1, 1}}}, std::nullopt);
     CHECK_FALSE(sampler_of(dome).sample(0.5f, {0.5f, 0.5f}, 0, kEye));
 }
@@ -134,7 +133,7 @@ TEST_CASE("what is certainly out of the frame's reach, or seen from behind, is l
     }
     CHECK(sampler.pdf_sphere(1, {3, 0, -2.99f}, 0, kEye) == 0);
     CHECK(sampler.pdf_triangle(0, 2, 0) == 0);
-    // A ball that the edge of the cone cuts is in reach.
+    // A ball that intersects the edge of the cone counts as visible.
     const LightSet edge({SphereLight{{{1.15f, -0.1f, -2.7f}, 0.05f}, {1, 1, 1}}}, std::nullopt);
     CHECK_FALSE(sampler_of(edge, view).empty());
 }

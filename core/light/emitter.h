@@ -1,5 +1,5 @@
-// emitter.h -- the kinds of light one by one: check, bounds, and a sample toward them. A
-// new kind of Light needs an overload of each.
+// emitter.h -- functions of each kind of light: validation, bounds, and light sampling. A new kind of Light needs an
+// overload of each.
 #pragma once
 #include <string>
 
@@ -14,18 +14,17 @@ void check_emitter(const DirectionalLight& light, const std::string& where);
 void check_emitter(const SphereLight& light, const std::string& where);
 void check_emitter(const TriangleLight& light, const std::string& where);
 
-/// For the tree; intensity 0: never shines, or is at infinity.
+/// Bounds for the light tree; intensity 0: never emits, or is at infinity.
 LightBounds emitter_bounds(const PointLight& light);
 LightBounds emitter_bounds(const SpotLight& light);
 LightBounds emitter_bounds(const DirectionalLight& light);
 LightBounds emitter_bounds(const SphereLight& light);
 LightBounds emitter_bounds(const TriangleLight& light);
 
-/// Makes bounds as narrow as the spread of a lamp's profile; the intensity is still without it.
+/// Narrows bounds to the spread of a lamp's profile, without changing the intensity.
 void narrow(LightBounds& bounds, const LampShape& lamp);
 
-/// Sample like a LightSample, but the radiance is still an Rgb and the choice of the light is not
-/// in the pdf.
+/// A LightSample with an Rgb radiance and a density without the choice of the light.
 struct EmitterSample {
     Vec3f wi;
     float distance;
@@ -33,7 +32,7 @@ struct EmitterSample {
     float pdf;
     bool delta;
     Vec2f barycentric{};
-    float error = 0;  // m, along wi: how far from there a ray may meet the lamp
+    float error = 0;  // m: error bound of the distance at which a ray along wi hits the lamp
 };
 std::optional<EmitterSample> sample_emitter(const PointLight& light, Vec2f u,
                                             Vec3f position);
@@ -46,18 +45,18 @@ std::optional<EmitterSample> sample_emitter(const SphereLight& light, Vec2f u,
 std::optional<EmitterSample> sample_emitter(const TriangleLight& light, Vec2f u,
                                             Vec3f position);
 
-/// Unit vector toward a point of the disc from which a directional light shines, even over its solid angle.
+/// Unit vector toward a uniformly sampled point of a directional light's disc.
 Vec3f toward_disc(const DirectionalLight& light, Vec2f u);
-/// Illuminance (lux) of the parallel light that each such direction stands for. An even disc of luminance L and half
-/// angle h has the solid angle W = 2 pi (1 - cos h) and brings E = pi L sin^2 h to a surface that faces it, pi L from
-/// h = pi / 2 on; this is L W.
+/// Illuminance (lux) of the equivalent parallel light for a sampled direction, L W. A uniform disc of luminance L and
+/// half angle h has the solid angle W = 2 pi (1 - cos h) and the illuminance E = pi L sin^2 h on a facing surface, or
+/// pi L for h >= pi / 2.
 Rgb disc_illuminance(const DirectionalLight& light);
 
-/// Bound of the distance (m) at which a ray tracer meets a lamp off its surface, by its largest coordinate: a few units
-/// in the last place, twice what rays that leave a surface are moved by.
+/// Error bound (m) of ray tracer hits on a lamp, from its largest coordinate: a few units in the last place, twice the
+/// offset of rays that leave a surface.
 inline float lamp_error(float largest_coordinate) { return 16 * 0x1p-24f * largest_coordinate; }
 
-/// Solid-angle density of sample_emitter.
+/// Density of sample_emitter, 1/sr.
 float emitter_pdf(const SphereLight& light, Vec3f position);
 float emitter_pdf(const TriangleLight& light, float t, float cos_light);
 

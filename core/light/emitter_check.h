@@ -1,5 +1,4 @@
-// emitter_check.h -- checks that the kinds of light share, and the brightness by which
-// they are chosen.
+// emitter_check.h -- checks shared by the kinds of light, and the brightness for choosing lights.
 #pragma once
 #include <sstream>
 #include <string>
@@ -34,8 +33,8 @@ inline void check_positive(const std::string& where, const char* what, float v) 
     if (!(v > 0)) throw input_error(where, what, "a number > 0", std::to_string(v));
 }
 
-/// Luminance, and a share of the mean of the channels: a pure blue lamp is dim to the
-/// eye, but no less noisy in the picture's blue channel.
+/// Mixes luminance with the mean of the channels: a pure blue lamp has a low luminance, but causes as much noise in the
+/// picture's blue channel.
 inline float selection_weight(Rgb c) {
     return 0.5f * (luminance(c) + (c.x + c.y + c.z) / 3);
 }

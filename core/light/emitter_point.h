@@ -1,4 +1,4 @@
-// emitter_point.h -- where light of a flare path comes from.
+// emitter_point.h -- the source point of a flare path.
 #pragma once
 #include <optional>
 
@@ -6,13 +6,12 @@
 
 namespace dg {
 
-/// A point that shines, or a direction from which light comes; or a point through which light comes that
-/// other things send on.
+/// A point on an emitter, a direction toward an emitter, or a point that reflected light passes.
 struct EmitterPoint {
-    EmissionPoint point;     // pdf: as of EmissionPoint; of a delta light the choice alone
+    EmissionPoint point;     // for delta lights, pdf is the probability of the choice
     bool at_infinity = false;
-    bool delta = false;      // a light without size
-    std::optional<float> reflected{};   // cd/m2 that a survey expects there: the point does not shine itself
+    bool delta = false;      // a delta light
+    std::optional<float> reflected{};   // cd/m2: reflected luminance expected by a survey; the point is no emitter
 };
 
 }  // namespace dg

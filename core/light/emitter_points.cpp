@@ -9,16 +9,16 @@
 namespace dg {
 namespace {
 
-constexpr double kOwnShare = 0.01;    // lights that bring more than this are sources by themselves
-constexpr float kOneLamp = 0.07f;     // rad: triangles of an instance that is seen smaller are one light
-constexpr double kLeastShare = 0.02;  // of the mean: no light is chosen less often within its source
-constexpr float kPartAngle = 0.4f;    // rad: a light that is seen larger is divided
-constexpr int kMostAcross = 6;        // parts of it, by side
-constexpr double kPartShare = 0.005;  // that a part brings at least: so many parts there are at most
+constexpr double kOwnShare = 0.01;    // share of all light above which a light is a separate source
+constexpr float kOneLamp = 0.07f;     // rad: angular size up to which the triangles of an instance form one source
+constexpr double kLeastShare = 0.02;  // fraction of the mean: lower bound of a light's weight in its source
+constexpr float kPartAngle = 0.4f;    // rad: angular size above which a light is divided
+constexpr int kMostAcross = 6;        // limit of parts along each axis of a light
+constexpr double kPartShare = 0.005;  // least share of all light per part
 constexpr int kMostHot = 48;          // parts of the bright sky
-constexpr int kAcross = 16, kDown = 8;   // tiles of the rest
+constexpr int kAcross = 16, kDown = 8;   // tiles of the remaining sky
 
-/// Where a direction lies on a cube, 4 x 4 squares on each side.
+/// Index of a direction's square on a cube map with 4 x 4 squares per side.
 int square_of(Vec3f d) {
     const float ax = std::abs(d.x), ay = std::abs(d.y), az = std::abs(d.z);
     const int axis = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
@@ -27,7 +27,7 @@ int square_of(Vec3f d) {
     return ((axis * 2 + (main > 0)) * 4 + step(u)) * 4 + step(v);
 }
 
-/// One past the triangles of an instance, which lie side by side, or past the one light that is no triangle.
+/// End of the consecutive triangle lights of an instance, or of a single light of another kind.
 std::size_t end_of_instance(std::span<const Light> lights, std::size_t first) {
     const auto instance = [&](std::size_t i) {
         const auto* triangle = std::get_if<TriangleLight>(&lights[i]);
@@ -38,7 +38,7 @@ std::size_t end_of_instance(std::span<const Light> lights, std::size_t first) {
     return end;
 }
 
-/// Angle that it fills at most as these see it, rad; pi from within.
+/// Largest angular size of bounds from the views, rad; pi from inside.
 float angle_of(const LightBounds& b, std::span<const ViewCone> views) {
     const float radius = 0.5f * length(b.max - b.min);
     float angle = 0;
@@ -49,7 +49,7 @@ float angle_of(const LightBounds& b, std::span<const ViewCone> views) {
     return angle;
 }
 
-/// Illuminance by a unit of area there, as far as a place and a direction tell it.
+/// Illuminance per unit area of an emitter, from position and orientation.
 double brought_by(const std::optional<EmitterPoint>& point, const Viewpoint& view) {
     if (!point) return 0;
     const Vec3f to = view.eye - point->point.position;
@@ -57,7 +57,7 @@ double brought_by(const std::optional<EmitterPoint>& point, const Viewpoint& vie
     return d2 > 0 ? std::abs(dot(to, point->point.normal)) / (d2 * std::sqrt(d2)) : 0;
 }
 
-/// Triangles of one instance.
+/// Triangle lights of an instance.
 struct Lamp {
     std::vector<std::int32_t> lights;
     LightBounds bounds{};
@@ -105,7 +105,7 @@ void EmitterPoints::add_lights(std::span<const ViewCone> views) {
     for (auto& [square, members] : groups) add_source(std::move(members), strength);
 }
 
-/// A lamp of many triangles that is seen small is one source, as a ball is: its ghosts are those of the whole.
+/// A lamp of many triangles with a small angular size is a single source, like a sphere light.
 std::vector<bool> EmitterPoints::add_lamps(std::span<const ViewCone> views, const std::vector<double>& strength,
                                            double all) {
     std::vector<bool> taken(strength.size());
@@ -132,7 +132,7 @@ void EmitterPoints::add_source(std::vector<std::int32_t> lights, const std::vect
     sources_.push_back(std::move(source));
 }
 
-/// Squares of the numbers that choose a point on a light.
+/// Subdivision of the random numbers that choose a point on a light.
 std::vector<EmitterPoints::Part> EmitterPoints::parts_of(std::int32_t light, double share,
                                                          std::span<const ViewCone> views) const {
     if (lights_->infinite_weight(light) > 0) return {Part{}};
@@ -146,7 +146,8 @@ std::vector<EmitterPoints::Part> EmitterPoints::parts_of(std::int32_t light, dou
     return parts;
 }
 
-/// From a large light each ghost takes another part for each place of the film: rays to all of it hardly ever find it.
+/// Divides a large light: each film point sees a ghost of a different small part, which rays to the whole light seldom
+/// hit.
 void EmitterPoints::add_parts(std::int32_t light, const std::vector<double>& strength, double all,
                               std::span<const ViewCone> views) {
     add_source({light}, strength);
@@ -167,7 +168,7 @@ void EmitterPoints::add_parts(std::int32_t light, const std::vector<double>& str
     }
 }
 
-/// Bright spots by their luminance; the rest, and a sky of one colour, by tiles, evenly.
+/// Adds bright spots with samples by luminance, and uniform tiles for the remaining sky.
 void EmitterPoints::add_sky(std::span<const ViewCone> views) {
     if (!lights_->has_environment()) return;
     const Environment& sky = *lights_->environment();
@@ -182,7 +183,7 @@ void EmitterPoints::add_sky(std::span<const ViewCone> views) {
             if (const auto p = sample_tile(tile, u, views.front().time))
                 sum += luminance(sky.luminance(p->point.position, views.front().time));
         }
-        // A tile that is dark where it was looked at may shine elsewhere.
+        // A tile with dark samples may contain light elsewhere.
         const double mean = std::max(sum / 16, 1e-3 * sky.mean_luminance());
         if (mean > 0) sources_.push_back({.strength = mean * tile.solid_angle(), .tile = tile});
     }
@@ -240,7 +241,7 @@ std::optional<EmitterPoint> EmitterPoints::sample_light(std::int32_t light, Vec2
     return from;
 }
 
-/// Directions evenly, but for those of bright spots, which have sources of their own.
+/// Uniform directions without bright spots, which are separate sources.
 std::optional<EmitterPoint> EmitterPoints::sample_tile(const DirectionTile& tile, Vec2f u, float time) const {
     const Vec3f d = tile.at(u);
     if (!hot_.empty() && hot_.pdf(d, time) > 0) return std::nullopt;

@@ -1,6 +1,6 @@
-// emitter_points.h -- where ghosts get their light: all emitters that there are, in sources that a lens sees in
-// about one direction each. What no picture shows, point, spot and directional lights, has ghosts, too; and so
-// has what other things reflect, where a survey found it.
+// emitter_points.h -- light sources of ghosts: all emitters, grouped into sources that the lens sees in about one
+// direction each. Includes point, spot and directional lights, which are invisible but have ghosts, and reflected light
+// that a survey found.
 #pragma once
 #include <optional>
 #include <span>
@@ -16,26 +16,26 @@ namespace dg {
 class EmitterPoints {
   public:
     EmitterPoints() = default;
-    /// `views`: the whole world as seen from the lens, at some moments. `lights` outlives this.
+    /// `views`: cones of all directions from the lens, at several times. `lights` must outlive this.
     EmitterPoints(const LightSet& lights, std::span<const ViewCone> views);
-    /// Once.
+    /// Adds reflected light. Call it at most once.
     void add(Highlights highlights);
 
     int count() const { return int(sources_.size()); }
-    /// Illuminance that it brings to the lens, as far as can be known without asking what is in its way, lux.
+    /// Estimated unoccluded illuminance by a source at the lens, lux.
     double strength(int source) const { return sources_[source].strength; }
-    /// Mirrors may show it: lamps and bright spots of the sky.
+    /// Whether mirrors may show the source: lamps with an area, and bright spots of the sky.
     bool has_size(int source) const;
-    /// Light of other things, which takes a path to know.
+    /// Whether the source is reflected light, which paths have to estimate.
     bool reflected(int source) const { return sources_[source].highlight >= 0; }
-    /// Whether this source draws the ray to the world that it was sampled for; else another one does.
+    /// Whether this source accounts for the ray that it sampled; otherwise another source does.
     bool owns(int source, const Ray& ray) const {
         return !reflected(source) || highlights_.owns(sources_[source].highlight, ray);
     }
-    /// `u_select`: which of its lights.
+    /// Samples a point of a source. `u_select` chooses among its lights.
     std::optional<EmitterPoint> sample(int source, float u_select, Vec2f u, float time,
                                      const Viewpoint& view) const;
-    /// Light of a delta light toward a point (m): cd; of a directional one lux.
+    /// Light of a delta light toward a point (m): cd, or lux for a directional light.
     Rgb delta_value(const EmitterPoint& from, Vec3f to, float time) const;
 
   private:
@@ -46,15 +46,15 @@ class EmitterPoints {
     };
     struct Source {
         double strength = 0;
-        std::vector<std::int32_t> lights{};   // or
+        std::vector<std::int32_t> lights{};   // lights of the source, or
         DiscreteDistribution choice{};
-        Part part{};                          // of all of them
-        int hot = -1;                         // part of the bright sky, or
-        std::optional<DirectionTile> tile{};  // of the even part of it, or
+        Part part{};                          // part of these lights
+        int hot = -1;                         // index of a part of the bright sky, or
+        std::optional<DirectionTile> tile{};  // tile of the remaining sky, or
         int highlight = -1;
     };
     void add_lights(std::span<const ViewCone> views);
-    /// Which lights it took.
+    /// Adds lamps of many triangles as single sources; returns a flag for each light that is part of them.
     std::vector<bool> add_lamps(std::span<const ViewCone> views, const std::vector<double>& strength, double all);
     void add_source(std::vector<std::int32_t> lights, const std::vector<double>& strength);
     std::vector<Part> parts_of(std::int32_t light, double share, std::span<const ViewCone> views) const;

@@ -1,4 +1,4 @@
-// Lights in sources that a lens sees in about one direction each: which of them are one, and where their points are.
+// Grouping of lights into sources that a lens sees in about one direction, and points of the sources.
 #include "light/emitter_points.h"
 
 #include <doctest/doctest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kRadius = 0.5f;
 
-/// A disc that faces the z axis, of so many triangles around its middle.
+/// A disc that faces the z axis, a fan of `count` triangles.
 std::vector<Light> disc(Vec3f middle, std::uint32_t triangles, std::uint32_t instance = 0) {
     std::vector<Light> lights;
     const auto rim = [&](std::uint32_t i) {
@@ -38,19 +38,19 @@ int sources_of(const LightSet& lights, std::vector<ViewCone> views = {{.from = {
 
 TEST_CASE("triangles of one instance are one source if they are seen as a small lamp") {
     CHECK(sources_of(set_of(disc({0, 0, -30}, 14))) == 1);
-    CHECK(sources_of(set_of(disc({0, 0, -30}, 1000))) == 1);   // each of them is weak
-    CHECK(sources_of(set_of(disc({0, 0, -3}, 14))) == 14);     // it is near: they lie in directions of their own
+    CHECK(sources_of(set_of(disc({0, 0, -30}, 1000))) == 1);   // each triangle is weak
+    CHECK(sources_of(set_of(disc({0, 0, -3}, 14))) == 14);     // near: triangles in different directions
     std::vector<Light> two = disc({0, 0, -30}, 14);
     for (const Light& l : disc({0.3f, 0, -30}, 20, 1)) two.push_back(l);
     CHECK(sources_of(set_of(two)) == 2);
-    // A lens that comes near sees it large.
+    // A lens that comes near sees a large angular size.
     const ViewCone far{.from = {{0, 0, 0}, 0.02f}, .time = 0}, near{.from = {{0, 0, -27}, 0.02f}, .time = 1};
     CHECK(sources_of(set_of(disc({0, 0, -30}, 14)), {far, near}) == 14);
 }
 
 namespace {
 
-/// Integral over the area that one source covers; and the lights that its points are on.
+/// Integral over the area of a source, and the lights of its points.
 template <typename Of>
 double integral(const EmitterPoints& sources, int source, const Viewpoint& view, const Of& of,
                 std::set<std::int32_t>* drawn = nullptr) {
@@ -68,7 +68,7 @@ double integral(const EmitterPoints& sources, int source, const Viewpoint& view,
 
 constexpr auto kArea = [](Vec3f) { return 1.0; };
 
-/// A metre before the lens.
+/// A point 1 m in front of the lens.
 TriangleLight wide() {
     TriangleLight t{{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {5, 5, 5}, 0, 0, false};
     t.even = true;
@@ -104,7 +104,7 @@ TEST_CASE("a light that is seen large is sources for its parts, which cover it o
             CHECK(sources.strength(i) > 0);
         }
         const bool flat = std::holds_alternative<TriangleLight>(light);
-        // A ball shows 2 pi r^2 (1 - cos) of what some point of the lens may see (1 - r' / d to either side).
+        // Area of a ball that points of the lens may see: 2 pi r^2 (1 - cos).
         const double seen = 2 * kPiD * (1 - (1 - 0.02) / 2);
         CHECK(area == doctest::Approx(flat ? 2 : seen).epsilon(0.02));
         if (flat) CHECK(xx == doctest::Approx(2 / 3.0).epsilon(0.02));
@@ -116,7 +116,7 @@ TEST_CASE("a light that is seen large is sources for its parts, which cover it o
 TEST_CASE("a large light that is dim beside others stays whole: each part has to be learned about") {
     const ViewCone view{.from = {{0, 0, 0}, 0.02f}};
     const double own = illuminance_estimate(set_of({wide()}).bounds_of(0), false, view);
-    const auto beside = [&](double times) {   // a ball of so many times its light
+    const auto beside = [&](double times) {   // a ball with a multiple of its light
         const float luminance = float(times * own / (kPiD * 0.01 * 0.01));
         return sources_of(set_of({wide(), SphereLight{{{0, 0, -1}, 0.01f}, {luminance, luminance, luminance}}}));
     };

@@ -1,13 +1,11 @@
 // environment.cpp -- light from infinity.
 //
-// The picture is cut into cells between the centres of its texels, w columns by h + 1
-// rows (the first and last row are half as high and touch the poles). In a cell, with x
-// in [0,1] along azimuth and s in [0,1] linear in cos theta (so that equal areas of (x,
-// s) are equal solid angles), the density is bilinear between the four texel luminances.
+// The picture is divided into cells between its texel centers, w columns by h + 1 rows (the first and last row have
+// half the height and touch the poles). In a cell, with x in [0,1] along azimuth and s in [0,1] linear in cos theta (so
+// that equal areas of (x, s) are equal solid angles), the density interpolates the four texel luminances bilinearly.
 // Its integral over a cell is mean * solid angle, hence
 //   pdf(direction) = bilinear luminance / sum over cells(mean * solid angle),
-// continuous everywhere; only the small difference between s and the picture's v is left
-// to noise.
+// which is continuous. The small difference between s and the picture's v causes little noise.
 #include "light/environment.h"
 
 #include "light/environment_picture.h"
@@ -58,8 +56,8 @@ float bilinear(const std::array<float, 4>& c, float x, float y) {
     return top + (low - top) * y;
 }
 
-/// x in [0,1] with density proportional to a + (b - a) x. Source: inverse of its CDF, a
-/// quadratic, in the form without cancellation.
+/// Samples x in [0,1] with a density proportional to a + (b - a) x, by the inverse of its quadratic CDF in a form
+/// without cancellation.
 float sample_linear(float u, float a, float b) {
     if (a + b <= 0) return u;
     const float x =
@@ -71,7 +69,7 @@ float fraction(float cells) {
     return std::clamp(cells - std::floor(cells), 0.f, 1.f);
 }
 
-/// In texels: column coordinate in [0, w), 0 at the left edge of the picture.
+/// Column coordinate in texels, [0, w), with 0 at the left edge of the picture.
 float column_of(Vec3f d, int width) {
     const float u = 0.5f + atan2(d.x, -d.z) / (2 * kPi);
     return std::clamp(u, 0.f, 1.f) * width;
@@ -80,7 +78,7 @@ float theta_of(Vec3f d) {
     return atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y);
 }
 
-/// Column of cells, which start half a texel to the right of the picture's edge.
+/// Column of cells; cells start half a texel to the right of the picture's edge.
 struct CellColumn {
     int c;
     float x;
@@ -200,8 +198,7 @@ Environment::Sample Environment::sample_within(Vec2f u) const {
     const int r = std::min(static_cast<int>(cell.y * (p.height + 1)), p.height);
     const Vec3f d = p.sample_in(c, r, {fraction(cell.x * p.width), fraction(cell.y * (p.height + 1))});
     const Vec3f world = normalize(p.world_from_environment.vector(d));
-    // Asked of the direction as rounded, so that sample and pdf agree also in the
-    // steepest cell.
+    // Evaluated for the rounded direction, so that sample and pdf agree in steep cells, too.
     return {world, pdf_within(world)};
 }
 

@@ -1,4 +1,4 @@
-// environment.h -- light from infinity: an equirectangular picture, or one colour.
+// environment.h -- light from infinity: an equirectangular picture, or a uniform colour.
 #pragma once
 #include <memory>
 #include <optional>
@@ -11,19 +11,18 @@
 
 namespace dg {
 
-/// Picture: row 0 is the zenith (+y up, as glTF); the centre column looks along -z; 1.0
-/// is `scale` cd/m2. Lookup is bilinear, wrapping in azimuth; sampling follows the
-/// luminance of that same bilinear function (its rows interpolated in cos theta), so that
-/// pdf > 0 wherever radiance > 0.
+/// In the picture, row 0 is the zenith (+y up, as in glTF), the center column is in the direction -z, and 1.0 is
+/// `scale` cd/m2. Lookup is bilinear, and wraps in azimuth. Sampling uses the luminance of the same bilinear function
+/// (with rows interpolated in cos theta), so that pdf > 0 wherever radiance > 0.
 struct EnvironmentImage {
     int width = 0, height = 0;
     std::vector<Rgb> pixels;
 };
 
-/// Parts of an environment that may change over time.
+/// Animated parameters of an environment.
 struct EnvironmentPose {
-    Rgb strength{1, 1, 1};  // times the picture, or the colour
-    float turn = 0;         // rad about +y, right-handed; on top of the picture's own transform
+    Rgb strength{1, 1, 1};  // factor on the picture or the colour
+    float turn = 0;         // rad about +y, right-handed; applied after the picture's transform
 };
 EnvironmentPose blend(const EnvironmentPose& a, const EnvironmentPose& b, float share);
 
@@ -31,11 +30,11 @@ EnvironmentPose blend(const EnvironmentPose& a, const EnvironmentPose& b, float 
 class Environment {
   public:
     static Environment constant(Rgb luminance);
-    /// Throws Error on a wrong size, on values that are negative or not finite (by row
-    /// and column), and on a transform that is no rotation.
+    /// Throws Error for a wrong size, for negative or non-finite values (naming row and column), and for a transform
+    /// that is not a rotation.
     static Environment image(EnvironmentImage image, float scale,
                              const Affine3f& world_from_environment);
-    /// The same, posed over time. Throws Error on a pose that is not finite, or negative.
+    /// A copy with poses over time. Throws Error for a pose that is not finite or has a negative strength.
     Environment posed(Keyed<EnvironmentPose> poses) const;
 
     Rgb luminance(Vec3f direction, float time) const {
@@ -51,12 +50,11 @@ class Environment {
     float pdf(Vec3f direction, float time) const {
         return poses_ ? pdf_posed(direction, time) : pdf_within(direction);
     }
-    /// A direction as the picture has it, from the one in the world at that time, and back. One colour
-    /// has no picture: they are the same.
+    /// Converts directions between world and picture at a time. Identity for a uniform colour.
     Vec3f to_picture(Vec3f direction, float time) const;
     Vec3f to_world(Vec3f direction, float time) const;
     bool is_constant() const { return !picture_; }
-    float mean_luminance() const { return mean_luminance_; }  // over the sphere; the largest ever
+    float mean_luminance() const { return mean_luminance_; }  // over the sphere; maximum over time
 
   private:
     friend class HotSky;
@@ -68,10 +66,10 @@ class Environment {
     Rgb luminance_posed(Vec3f direction, float time) const;
     Sample sample_posed(Vec2f u, float time) const;
     float pdf_posed(Vec3f direction, float time) const;
-    std::shared_ptr<const Picture> picture_;  // absent: constant
+    std::shared_ptr<const Picture> picture_;  // null: uniform colour
     Rgb constant_{};
     float mean_luminance_ = 0;
-    std::shared_ptr<const Keyed<EnvironmentPose>> poses_;  // absent: it stays as it is
+    std::shared_ptr<const Keyed<EnvironmentPose>> poses_;  // null: static
 };
 
 }  // namespace dg

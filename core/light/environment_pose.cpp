@@ -1,5 +1,5 @@
-// environment_pose.cpp -- an environment that turns and changes its strength: the tables stay in
-// the frame of the picture, and directions are turned there at the time.
+// environment_pose.cpp -- an environment with animated rotation and strength: tables are in the frame of the picture,
+// and directions are rotated to it.
 #include "light/emitter_check.h"
 #include "light/environment.h"
 
@@ -31,7 +31,7 @@ Environment Environment::posed(Keyed<EnvironmentPose> poses) const {
     return e;
 }
 
-/// About +y by the turn at that time, or back (sign -1).
+/// Rotates about +y by the turn at that time, or back (sign -1).
 Vec3f Environment::turned(Vec3f direction, float time, float sign) const {
     return poses_ ? turned_about_y(direction, sign * poses_->at(time).turn) : direction;
 }
@@ -44,7 +44,7 @@ Rgb Environment::luminance_posed(Vec3f direction, float time) const {
 Environment::Sample Environment::sample_posed(Vec2f u, float time) const {
     Sample s = sample_within(u);
     s.direction = normalize(turned_about_y(s.direction, poses_->at(time).turn));
-    s.pdf = pdf_posed(s.direction, time);  // of the direction as rounded
+    s.pdf = pdf_posed(s.direction, time);  // for the rounded direction
     return s;
 }
 

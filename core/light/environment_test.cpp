@@ -1,5 +1,4 @@
-// environment_test.cpp -- lookup conventions, and sampling against density, hot texels
-// included.
+// environment_test.cpp -- lookup conventions, and samples against densities, including bright texels.
 #include "light/environment.h"
 
 #include <doctest/doctest.h>
@@ -21,7 +20,7 @@ EnvironmentImage noise_image(int width, int height, std::uint64_t seed) {
     return image;
 }
 
-/// Zero but for one texel.
+/// A black picture with one bright texel.
 EnvironmentImage hot_image(int width, int height, int row, int column, float hot,
                            float rest) {
     EnvironmentImage image{
@@ -97,7 +96,7 @@ TEST_CASE("samples follow the density: chi-square") {
     CHECK(p_value(Environment::image(noise_image(37, 5, 6), 3, rotation())) > 1e-3);
     CHECK(p_value(Environment::image(hot_image(32, 16, 5, 31, 1e4f, 0.1f), 1, {})) >
           1e-3);
-    // At the zenith the density is a fan: the grid has the same pole and looks closer.
+    // At the zenith the density varies with azimuth: the grid has the same pole and a finer resolution.
     const Environment fan = Environment::image(hot_image(32, 16, 0, 7, 1e3f, 0), 1, {});
     CHECK(p_value(fan, 1, 200000, {Frame::from_normal({0, 1, 0}), 0.95, 1}) > 1e-3);
 }

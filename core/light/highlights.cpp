@@ -20,7 +20,7 @@ bool HighlightSpot::holds(const Ray& ray) const {
     return in.x >= 0 && in.y >= 0 && in.x < size.x && in.y < size.y;
 }
 
-/// On its plane; at infinity a direction.
+/// A point on the spot's plane, or a direction for a spot at infinity.
 EmitterPoint HighlightSpot::sample(Vec2f u, float time) const {
     const Sample2D s = weights.sample(u);
     const Vec2f t = Vec2f{low.x + size.x * s.x, low.y + size.y * s.y} + velocity * (time - 0.5f);

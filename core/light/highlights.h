@@ -1,9 +1,9 @@
-// highlights.h -- light that other things send to the lens, by reflection or through glass: from where, and about
-// how much. It says where rays are worth it, not what they find.
+// highlights.h -- approximate distribution of reflected and refracted light that reaches the lens, for importance
+// sampling. Paths estimate the light itself.
 //
-// A mirror shows a lamp at the place of its image, as if there were a lamp; so does glass. Seen from all over the
-// front of a lens that image stays where it is, while its direction changes. So bright spots are parts of planes
-// as far away as their images are, which go along with what moves; only the rest is drawn by direction.
+// A mirror or glass shows a lamp at the position of its image. Seen from different points of the lens's front, the
+// image has a fixed position, and its direction changes. So bright spots are rectangles on planes at the distance of
+// their images, which move with them; the remaining light is sampled by direction.
 #pragma once
 #include <optional>
 #include <span>
@@ -16,24 +16,24 @@
 
 namespace dg {
 
-/// A bright part of what is seen from an anchor: a rectangle of a plane across the way there, in tangents.
+/// A bright spot as seen from an anchor: a rectangle on a plane perpendicular to its direction, in tangents.
 struct HighlightSpot {
     Vec3f anchor;            // m
-    Frame frame;             // z: the way
+    Frame frame;             // z: direction to the spot
     float nearness = 0;      // 1 / distance of the plane, 1/m; 0: at infinity
-    Vec2f velocity{};        // of tangents, per exposure: of what moves, or is seen from what moves
+    Vec2f velocity{};        // change of tangents per exposure, by motion of spot or anchor
     Vec2f low{}, size{};     // at mid-exposure
-    Distribution2D weights{};   // of the luminance
+    Distribution2D weights{};   // by luminance
     double luminance = 0;    // cd/m2: mean
 
-    /// Where a ray meets the plane, moved to mid-exposure; nothing behind the anchor.
+    /// Intersection of a ray with the plane, moved to mid-exposure; empty behind the anchor.
     std::optional<Vec2f> meet(const Ray& ray) const;
     bool holds(const Ray& ray) const;
-    double solid_angle() const { return double(size.x) * size.y; }   // nearly
+    double solid_angle() const { return double(size.x) * size.y; }   // approximate
     EmitterPoint sample(Vec2f u, float time) const;
 };
 
-/// Directions that are not bright spots.
+/// A tile of directions without bright spots.
 struct HighlightTile {
     DirectionTile tile;
     Distribution2D weights;
@@ -48,13 +48,13 @@ class Highlights {
     Highlights(std::vector<HighlightSpot> spots, std::vector<HighlightTile> tiles)
         : spots_(std::move(spots)), tiles_(std::move(tiles)) {}
 
-    /// Spots, then tiles.
+    /// Number of spots and tiles; spots come first.
     int count() const { return int(spots_.size() + tiles_.size()); }
     int spots() const { return int(spots_.size()); }
-    /// lux, on a surface that faces it.
+    /// Illuminance by a spot or tile on a facing surface, lux.
     double illuminance(int part) const;
     EmitterPoint sample(int part, Vec2f u, float time) const;
-    /// A ray to the world is drawn by the first spot that holds it alone, and by a tile if none does.
+    /// Whether a spot or tile accounts for a ray: the first spot that contains it, or a tile if no spot does.
     bool owns(int part, const Ray& ray) const;
 
   private:
@@ -62,7 +62,7 @@ class Highlights {
     std::vector<HighlightTile> tiles_;
 };
 
-/// Whether one of the first so many holds the ray.
+/// Whether a spot contains the ray.
 bool held(std::span<const HighlightSpot> spots, const Ray& ray);
 
 }  // namespace dg

@@ -7,7 +7,7 @@
 namespace dg {
 namespace {
 
-// Smallest multiple of the mean that makes a bright spot.
+// Ratio to the mean above which a cell is a bright spot.
 constexpr double kHot = 4;
 
 }  // namespace
@@ -18,8 +18,8 @@ HotSky::HotSky(const Environment& environment, std::span<const ViewCone> views)
     const Environment::Picture& p = *environment.picture_;
     if (!(p.total > 0)) return;
     strength_ = environment.mean_luminance() / (p.total / (4 * kPiD));
-    const float spread = kPi / float(std::min(p.width / 2, p.height)) * 1.5f;   // of a cell, at least
-    const auto seen = [&](Vec3f direction) {
+    const float spread = kPi / float(std::min(p.width / 2, p.height)) * 1.5f;   // bound of a cell's size
+    const auto in_view = [&](Vec3f direction) {
         return std::ranges::any_of(views, [&](const ViewCone& view) {
             return view.sees_direction(environment.to_world(direction, view.time), spread);
         });
@@ -30,7 +30,7 @@ HotSky::HotSky(const Environment& environment, std::span<const ViewCone> views)
     for (int r = 0; r <= p.height; ++r) {
         const double cell = 2 * kPiD / p.width * (double(p.cos_edge[r]) - p.cos_edge[r + 1]);
         for (int c = 0; c < p.width; ++c) {
-            if (!seen(p.direction(c, r, 0.5f, 0.5f))) continue;
+            if (!in_view(p.direction(c, r, 0.5f, 0.5f))) continue;
             visible.push_back(std::uint32_t(r) * p.width + c);
             weights.push_back(p.weight(c, r));
             sum += weights.back(), solid_angle += cell;
@@ -98,7 +98,7 @@ Environment::Sample HotSky::sample(Vec2f u, float time) const {
     const std::uint32_t at = index_[cell.index];
     const Vec3f d = p.sample_in(at % p.width, at / p.width, {cell.u_remapped, u.y});
     const Vec3f world = normalize(environment_.to_world(d, time));
-    return {world, pdf(world, time)};   // of the direction as rounded
+    return {world, pdf(world, time)};   // for the rounded direction
 }
 
 float HotSky::pdf(Vec3f direction, float time) const {

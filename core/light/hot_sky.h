@@ -1,4 +1,4 @@
-// hot_sky.h -- the bright spots of an environment's picture that a lens sees: sun, street lamps, windows.
+// hot_sky.h -- samples the bright spots of an environment's picture that a lens sees: sun, street lamps, windows.
 #pragma once
 #include <memory>
 #include <span>
@@ -10,33 +10,32 @@
 
 namespace dg {
 
-/// Those cells of the picture (environment.cpp) that may be seen from a view and are much brighter than the
-/// mean of what is seen; sampled by luminance, as the whole would be. What is even is left out: paths from
-/// the lens find it wherever they look.
+/// Cells of the picture (environment.cpp) in the field of view that are much brighter than its mean, sampled by
+/// luminance. Excludes the remaining picture, which camera paths sample well.
 class HotSky {
   public:
     HotSky() = default;
     HotSky(const Environment& environment, std::span<const ViewCone> views);
 
-    /// Illuminance by all spots together (lux), on a surface that faces them.
+    /// Illuminance by all spots on a facing surface, lux.
     double illuminance() const { return cells_.empty() ? 0 : strength_ * cells_.sum(); }
-    /// World directions and densities (per sr) at a time; pdf is 0 outside the spots.
+    /// World directions and densities (1/sr) at a time; pdf is 0 outside the spots.
     Environment::Sample sample(Vec2f u, float time) const;
     float pdf(Vec3f direction, float time) const;
     bool empty() const { return cells_.empty(); }
 
-    /// The spots by the part of the sky where they are, 22.5 degrees across; of all parts but the brightest,
-    /// at most `most`, the rest together. Samples and densities of a part are its own.
+    /// Divides the spots by regions of the sky of 22.5 degrees: at most `most` parts for the brightest regions, and a
+    /// part for the rest. Samples and densities of a part are normalized for that part.
     std::vector<HotSky> parts(int most) const;
 
   private:
     void mark_hot();
 
     Environment environment_;
-    double strength_ = 1;               // of the environment at most
+    double strength_ = 1;               // largest strength of the environment
     DiscreteDistribution cells_;
-    std::vector<std::uint32_t> index_;  // of the cells, rows of the picture; rising
-    std::shared_ptr<const std::vector<bool>> hot_;   // by cell
+    std::vector<std::uint32_t> index_;  // indices of the cells, row by row, ascending
+    std::shared_ptr<const std::vector<bool>> hot_;   // per cell
 };
 
 }  // namespace dg

@@ -1,4 +1,4 @@
-// light.cpp -- the lights of a scene, and the choice among them.
+// light.cpp -- the lights of a scene, and the choice of a light.
 #include "light/light.h"
 
 #include "light/emitter.h"
@@ -10,14 +10,14 @@
 namespace dg {
 namespace {
 
-// Neither the lights from infinity nor those nearby ever get less than this share where
-// both shine: the estimate knows nothing of walls between.
+// Lower bound of the probability of both groups, infinite lights and nearby lights, if both reach a point: the estimate
+// ignores occlusion.
 constexpr float kLeastShare = 0.1f;
-// Nor any one light from infinity less than this share of their group.
+// Lower bound of a light's probability in the group of infinite lights.
 constexpr double kLeastInfiniteShare = 0.05;
 
 
-/// The next of some points that are spread over the unit square, wherever the first one is. Source: Roberts 2018,
+/// Next point of a low-discrepancy sequence in the unit square, from any starting point. Source: Roberts 2018,
 /// The Unreasonable Effectiveness of Quasirandom Sequences (R2).
 Vec2f turned(Vec2f u) {
     u = {u.x + 0.75487767f, u.y + 0.56984029f};
@@ -30,7 +30,7 @@ const char* kind_name(const Light& light) {
     return names[light.index()];
 }
 
-/// A light that the tree takes to be everywhere, so that only its intensity counts.
+/// Bounds for which the tree uses the intensity alone.
 LightBounds placeless(float intensity) {
     constexpr float kFar = 1e9f;
     LightBounds b;
@@ -60,7 +60,7 @@ LightSet::LightSet(std::vector<Light> lights, std::optional<Environment> environ
       environment_(std::move(environment)),
       motion_(std::move(motion)),
       profiles_(std::move(profiles)) {
-    std::string where;   // one for all: a million of them take a while
+    std::string where;   // shared by all lights, as allocating a million strings is slow
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         where.assign("light ").append(std::to_string(i)).append(" (").append(kind_name(lights_[i])).append(")");
         std::visit([&](const auto& light) { check_emitter(light, where); }, lights_[i]);
@@ -73,7 +73,7 @@ LightSet::LightSet(std::vector<Light> lights, std::optional<Environment> environ
     build_lookup();
 }
 
-/// Lamps learn how far their profiles spread.
+/// Sets the spread of profiles in lamps.
 void LightSet::take_profiles() {
     const auto take = [&](Light& light, std::size_t index) {
         LampShape* lamp = lamp_of(light);
@@ -91,7 +91,7 @@ void LightSet::take_profiles() {
         for (Light& key : keys.values) take(key, index);
 }
 
-/// A light whose keys are of no other use is what its only key says.
+/// Replaces a light with a single key by that key.
 void LightSet::build_changes() {
     for (const auto& [light, keys] : motion_.keys) {
         lights_[light] = keys.values[0];
@@ -156,13 +156,13 @@ void LightSet::build_groups(LightChoice choice) {
     }
     tree_ = LightTree(bounds);
 
-    // An even sky is left to the BSDF: following its lobe is already sampling in
-    // proportion to the light, and every shadow ray goes to a light that needs one.
+    // A uniform sky is left to BSDF sampling, which is proportional to its light already, so that shadow rays serve
+    // lights that need them.
     if (environment_ && !environment_->is_constant() &&
         environment_->mean_luminance() > 0) {
         infinite_lights_.push_back(kEnvironment);
         weights.push_back(kPiD *
-                          environment_->mean_luminance());  // E = pi L under an even sky
+                          environment_->mean_luminance());  // E = pi L under a uniform sky
     }
     double sum = 0;
     for (double w : weights) sum += w;
@@ -175,7 +175,7 @@ void LightSet::build_groups(LightChoice choice) {
     }
 }
 
-/// The next of the tree's lights.
+/// Adds a light to the tree.
 void LightSet::add_local(std::size_t light) {
     const auto* triangle = std::get_if<TriangleLight>(&lights_[light]);
     tree_index_[light] = static_cast<std::int32_t>(triangles_.size());
@@ -187,7 +187,7 @@ void LightSet::add_local(std::size_t light) {
 }
 
 void LightSet::build_lookup() {
-    std::vector<std::uint32_t> primitives;  // by instance, one more than the largest
+    std::vector<std::uint32_t> primitives;  // per instance, largest primitive + 1
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         if (std::holds_alternative<SphereLight>(lights_[i]))
             spheres_.push_back(static_cast<std::uint32_t>(i));
@@ -203,9 +203,8 @@ void LightSet::build_lookup() {
         first_slot_[i] = slots;
         slots += primitives[i];
     }
-    // A primitive beyond the last light of its instance would find a slot of the next
-    // instance; it is told apart by the instance and primitive that the light itself
-    // names.
+    // A primitive beyond the last light of its instance would access a slot of the next instance. The instance and
+    // primitive stored in the light detect that.
     triangle_slots_.assign(slots, kNone);
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         const auto* t = std::get_if<TriangleLight>(&lights_[i]);
@@ -221,7 +220,7 @@ float LightSet::infinite_probability(Vec3f position) const {
     return infinite_share(tree_.importance(position));
 }
 
-/// Among all lights, where those nearby bring `local` lux.
+/// Probability of the group of infinite lights, if nearby lights have an illuminance of `local` lux.
 float LightSet::infinite_share(float local) const {
     if (infinite_.empty()) return 0;
     if (!(local > 0)) return 1;
@@ -261,7 +260,7 @@ std::int64_t LightSet::triangle_index(std::uint32_t instance, std::uint32_t prim
     return triangle.instance == instance && triangle.primitive == primitive ? light : -1;
 }
 
-/// Nothing where the profile leaves no light.
+/// Empty if the profile is 0 in that direction.
 std::optional<EmitterSample> LightSet::with_profile(const Light& now, std::optional<EmitterSample> sample) const {
     if (profiles_.list.empty() || !sample) return sample;
     const LampShape* lamp = lamp_of(now);
@@ -271,7 +270,7 @@ std::optional<EmitterSample> LightSet::with_profile(const Light& now, std::optio
     return sample;
 }
 
-/// Samples a light that is no triangle, or changes.
+/// Samples a light that is not a triangle, or is animated.
 std::optional<EmitterSample> LightSet::sample_other(std::size_t light, Vec2f u,
                                                     Vec3f position, float time) const {
     const auto toward = [&](const auto& l) { return sample_emitter(l, u, position); };
@@ -313,7 +312,7 @@ void LightSet::sample_several(float u_select, Vec2f u, Vec3f position, float tim
     const float p_infinite = infinite_share(weights.sum), share = 1 / float(found.size());
     std::array<float, kMostSamples> select;
     std::array<LightTree::Choice, kMostSamples> choices;
-    std::size_t far = 0;   // the first ones come from infinity
+    std::size_t far = 0;   // number of samples from infinite lights, which come first
     for (std::size_t i = 0; i < found.size(); ++i) {
         select[i] = std::min((u_select + float(i)) * share, kBelowOne);
         if (select[i] < p_infinite)
@@ -335,7 +334,7 @@ void LightSet::sample_several(float u_select, Vec2f u, Vec3f position, float tim
     }
 }
 
-/// False, and pdf as it was, where the light does not shine there.
+/// False, without a change of pdf, if the light does not reach the point.
 bool LightSet::sample_local(const LightTree::Choice& choice, float p_local, Vec2f u, Vec3f position, float time,
                             const Wavelengths& wavelengths, LightSample& out) const {
     const TriangleSampler& triangle = triangles_[choice.light];

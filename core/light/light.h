@@ -1,6 +1,5 @@
-// light.h -- emitters: sample, pdf, emission. They take geometry, never the scene.
-// Photometric law: colours are Rgb of D65-shaped spectra; intensity cd, illuminance lux,
-// luminance cd/m2.
+// light.h -- emitters: sampling, densities, emission. Independent of the scene. Photometric units: colours are Rgb of
+// D65-shaped spectra; intensity cd, illuminance lux, luminance cd/m2.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -32,56 +31,56 @@ struct PointLight {
 };
 struct SpotLight {
     Vec3f position;                  // m
-    Vec3f direction;                 // unit, where it shines
+    Vec3f direction;                 // unit, axis of emission
     Rgb intensity;                   // cd, on the axis
     float inner_angle, outer_angle;  // rad, half angles
     float range = std::numeric_limits<float>::infinity();
 };
-/// Light from infinity: parallel, or from an even disc that light sampling alone finds (emitter.h).
+/// Light from infinity: parallel, or from a uniform disc that only light sampling finds (emitter.h).
 struct DirectionalLight {
-    Vec3f direction;  // unit, where it shines; of a disc from its middle
-    Rgb illuminance;  // lux, on a surface that faces it
-    float angle = 0;  // rad, diameter of the disc; 0: parallel
+    Vec3f direction;  // unit, direction of propagation; for a disc, from its center
+    Rgb illuminance;  // lux, on a facing surface
+    float angle = 0;  // rad, angular diameter of the disc; 0: parallel
 };
-/// A ball that shines evenly, or by a profile; rays can hit it (Intersector sphere `sphere`).
+/// A spherical emitter, uniform or with a profile; rays can hit it (Intersector sphere `sphere`).
 struct SphereLight {
     Sphere shape;
     Rgb luminance;  // cd/m2
     LampShape lamp{};
 };
-/// One emissive triangle, world space.
+/// An emissive triangle in world space.
 struct TriangleLight {
     Vec3f a, b, c;
-    Rgb mean_luminance;  // cd/m2, mean over the triangle: steers the choice of lights
-                         // only
+    Rgb mean_luminance;  // cd/m2, mean over the triangle, only for
+                         // choosing lights
     std::uint32_t instance, primitive;
     bool two_sided;
-    bool mirrored = false;  // the front is where a, b, c run clockwise (instance with
+    bool mirrored = false;  // a, b, c are clockwise seen from the front (instance with
                             // determinant < 0)
     bool even =
-        false;  // the side or sides that shine do so with mean_luminance everywhere
+        false;  // emission is uniform, mean_luminance on each emissive side
 };
 using Light =
     std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, TriangleLight>;
 
-/// Shape of the kinds that may have a profile; null for the others.
+/// Profile placement of kinds that may have a profile; null for other kinds.
 const LampShape* lamp_of(const Light& light);
 LampShape* lamp_of(Light& light);
 
-/// Motion of lights while the shutter is open (fractions of the scene's interval), by their index;
-/// those that are not named stay as they are. See light_keys.h.
+/// Motion of lights while the shutter is open (fractions of the scene's interval), by index; other lights are static.
+/// See light_keys.h.
 struct LightMotion {
-    std::map<std::uint32_t, Keyed<Light>> keys;  // of one kind each; no triangles
-    /// Triangles that move, each with bounds of all that it ever reaches.
+    std::map<std::uint32_t, Keyed<Light>> keys;  // each of a single kind; no triangles
+    /// Moving triangles, with bounds over all times.
     std::map<std::uint32_t, LightBounds> triangles;
-    /// Puts one of them where it is at a time; false while it is not there at all.
+    /// Moves a triangle to its position at a time; false while it is hidden.
     std::function<bool(TriangleLight&, float time)> place;
 };
 
 /// Profiles that the lights of a scene refer to by index.
 struct LightProfiles {
     std::vector<std::shared_ptr<const LightProfile>> list{};
-    std::vector<std::int32_t> of_instance{};   // of its triangle lights; -1: none. Empty: none at all
+    std::vector<std::int32_t> of_instance{};   // profile of an instance's triangle lights; -1: none. Empty: no profiles
 };
 
 struct LightSample {
@@ -89,90 +88,86 @@ struct LightSample {
     float distance;     // m; infinity for directional and environment
     Spectrum radiance;  // incident radiance; for a delta light the incident irradiance on
                         // a facing surface
-    float pdf;  // solid angle, selection included; for a delta light the selection
-                // probability
-    bool delta;  // light sampling alone finds it: it has no size, or is the disc of a sun
-    /// Index in lights(), or kEnvironment; of a triangle also where it was sampled (weights
-    /// of its second and third corner).
+    float pdf;  // 1/sr, including the choice of the light; for a delta light, the probability
+                // of the choice
+    bool delta;  // only light sampling finds it: it has no area, or is the disc of a sun
+    /// Index in lights(), or kEnvironment; for a triangle also the barycentrics of the point (weights of its second and
+    /// third corner).
     std::int32_t light = -1;
     Vec2f barycentric;
-    /// The triangle does not shine evenly: the scene evaluates the emission there.
+    /// Non-uniform triangle: the scene evaluates the emission at the point.
     bool uneven = false;
-    float error = 0;  // m, along wi: how far from there a ray may meet the lamp
+    float error = 0;  // m: error bound of the distance at which a ray along wi hits the lamp
 };
 
 struct TriangleSampler;
 struct LightWay;
 struct EmitterSample;
 
-/// How one light with a place is chosen: by the tree; by power alone or evenly, to
-/// measure what the tree is worth.
+/// Choice among lights with a position: by the tree; by power alone or uniformly, to measure the benefit of the tree.
 enum class LightChoice { tree, power, even };
 
-/// All lights of a scene with the law by which one is chosen for a point: by an estimate
-/// of the illuminance that each brings there, so that neither a huge scene nor a near
-/// lamp starves the others. Lights from infinity (directional, environment) form one
-/// group, the rest a LightTree. The choice is the same at all times: it knows where each
-/// light ever is and how bright it ever gets. What is sampled is the light at the time.
+/// All lights of a scene, with a distribution for choosing a light at a point: by the estimated illuminance of each
+/// light, which works for huge scenes and for near lamps. Lights from infinity (directional, environment) form one
+/// group, the rest a LightTree. Probabilities do not depend on time: they use bounds of position and brightness over
+/// all times. Samples are of the light at the given time.
 class LightSet {
   public:
     LightSet();
     ~LightSet();
     LightSet(LightSet&&) noexcept;
     LightSet& operator=(LightSet&&) noexcept;
-    /// Throws Error naming light and value: not finite, negative colour, zero direction,
-    /// radius or range not positive, angles of a spot out of order.
+    /// Throws Error that names light and value: for non-finite values, a negative colour, a zero direction, a radius or
+    /// range that is not positive, or spot angles in the wrong order.
     LightSet(std::vector<Light> lights, std::optional<Environment> environment,
              LightChoice choice = LightChoice::tree, LightMotion motion = {}, LightProfiles profiles = {});
 
     bool empty() const { return tree_.empty() && infinite_.empty(); }
-    /// Radiance of triangle lights is mean_luminance here; LightSample::uneven tells the
-    /// caller to replace it by the textured value. Empty when the choice cannot
-    /// light the position.
+    /// Samples a light. The radiance of triangle lights is mean_luminance; if LightSample::uneven, the caller must
+    /// replace it by the textured value. Empty if the chosen light cannot illuminate the position.
     std::optional<LightSample> sample(float u_select, Vec2f u, Vec3f position, float time,
                                       const Wavelengths& wavelengths) const;
     static constexpr std::size_t kMostSamples = LightTree::kMostAtOnce;
-    /// Several samples of the same law, spread over the lights: some of `found` are without light (pdf 0).
+    /// Draws several stratified samples of the distribution of sample(); pdf 0 for samples without light.
     void sample_several(float u_select, Vec2f u, Vec3f position, float time, const Wavelengths& wavelengths,
                         std::span<LightSample> found) const;
-    /// One light for a way through a medium, on all places of which it may be sampled: its index, or kEnvironment, and
-    /// the chance of that. Empty when no light shines there.
+    /// Chooses a light for a segment in a medium, for sampling from any point of the segment: its index, or
+    /// kEnvironment, and its probability. Empty if no light reaches the segment.
     struct Choice {
         std::int32_t light;
         float probability;
     };
     std::optional<Choice> choose(float u, const LightWay& way) const;
-    /// The chance by the law of sample().
+    /// Probability with which sample() chooses a light.
     float choice_probability(std::int32_t light, Vec3f position) const;
-    /// A sample of one light, as sample() has it; its pdf is without the choice.
+    /// Samples a given light like sample(); its pdf excludes the choice.
     std::optional<LightSample> sample_one(std::int32_t light, Vec2f u, Vec3f position, float time,
                                           const Wavelengths& wavelengths) const;
-    /// The point of a light that sample_one() finds with the same u, or its middle; nothing at infinity.
+    /// The point of a light that sample_one() returns for the same u, or its center; empty for lights at infinity.
     struct Place {
         Vec3f position;
-        Vec3f normal;   // of any length: it shines before its plane alone; zero: on all sides
+        Vec3f normal;   // of any length: emits only in front of its plane; zero: emits to all sides
     };
     std::optional<Place> place_of(std::int32_t light, Vec2f u, float time) const;
-    /// Illuminance that all lights may bring to a point, lux: the estimate by which one is chosen, which knows of
-    /// nothing in between.
+    /// Estimated unoccluded illuminance by all lights at a point, lux, as used for choosing a light.
     float illuminance(Vec3f position) const {
         return infinite_illuminance_ + (tree_.empty() ? 0 : tree_.importance(position));
     }
-    /// Lights among which one is chosen.
+    /// Number of lights to choose from.
     std::size_t choices() const { return tree_.size() + infinite_lights_.size(); }
-    /// Solid-angle density (selection included) with which sample() would have chosen the
-    /// direction from `position` that met this triangle at `t` metres under |cos| at the
-    /// light. 0 for triangles that are not lights. Two-sided or not is the caller's
-    /// knowledge: ask only where it emits. `position` is the one that sample() was given,
-    /// since the choice of the light depends on it.
+    /// Density (1/sr, including the choice of the light) with which sample() returns the direction from `position` that
+    /// hits this triangle at the distance `t` m with |cos| at the light. 0 for triangles that are not lights. Must be
+    /// called only for emissive sides. `position` must be the argument of sample(), since the choice of the light
+    /// depends on it.
     float pdf_triangle(std::uint32_t instance, std::uint32_t primitive, float t,
                        float cos_light, Vec3f position, float time) const;
     float pdf_sphere(std::uint32_t sphere, Vec3f position, float time) const;
-    /// 0 everywhere for a constant environment: light sampling leaves it to the BSDF.
+    /// Density of environment samples; 0 for a uniform environment, which is left to BSDF sampling.
     float pdf_environment(Vec3f direction, Vec3f position, float time) const;
-    /// LightSample::pdf, had sample() chosen this light (or kEnvironment) along `wi` at `distance`.
+    /// LightSample::pdf with which sample() returns this light (or kEnvironment) along `wi` at `distance`.
     float pdf(std::int32_t light, Vec3f position, Vec3f wi, float distance, float time) const;
-    /// Emission seen by a ray that hit sphere light `sphere`, whose light goes `away` / left the scene.
+    /// Radiance for a ray that hit sphere light `sphere`, emitted in the direction `away`, or for a ray that left the
+    /// scene.
     Spectrum sphere_radiance(std::uint32_t sphere, Vec3f away, float time,
                              const Wavelengths& wavelengths) const;
     Spectrum environment_radiance(Vec3f direction, float time,
@@ -181,30 +176,30 @@ class LightSet {
         return sphere_light_at(spheres_[sphere], time);
     }
     SphereLight sphere_light_at(std::size_t light, float time) const;
-    /// Index in lights() of the sphere light that rays meet as this sphere; of a triangle light, or -1.
+    /// Index in lights() of an Intersector sphere's light; of a triangle's light, or -1.
     std::int64_t sphere_index(std::uint32_t sphere) const { return spheres_[sphere]; }
     std::int64_t triangle_index(std::uint32_t instance, std::uint32_t primitive) const;
-    /// Whether it is elsewhere, or another, at other times.
+    /// Whether the light changes over time.
     bool moves(std::size_t light) const {
         return keys_of(light) || motion_.triangles.contains(std::uint32_t(light));
     }
     bool has_environment() const { return environment_.has_value(); }
-    /// Index that stands for the environment among those of lights.
+    /// Index of the environment.
     static constexpr std::int32_t kEnvironment = -1;
-    /// Whether light sampling looks for it: it is no even sky.
+    /// Whether light sampling includes the environment: it is not uniform.
     bool samples_environment() const { return environment_pmf_ > 0; }
     const std::vector<Light>& lights() const { return lights_; }
-    /// A triangle light where it is at a time; empty while it is not there at all.
+    /// A triangle light at a time; empty while it is hidden.
     std::optional<TriangleLight> triangle_at(std::size_t light, float time) const;
-    /// Any other as it is at a time.
+    /// A light of another kind at a time.
     Light light_at(std::size_t light, float time) const;
-    /// Factor on the light of one that is no triangle (a light as it is at a time) which goes `away` (unit).
+    /// Profile factor on the emission of a light at a time in the direction `away` (unit); not for triangles.
     Rgb shaped(const Light& now, Vec3f away) const;
-    /// Null: it shines as its kind does.
+    /// Profile of a light; null: none.
     const LightProfile* profile_of(std::size_t light) const;
-    /// Where a light ever is, and how bright it ever gets; intensity 0: never, or at infinity.
+    /// Bounds of a light over all times; intensity 0: never emits, or is at infinity.
     LightBounds bounds_of(std::size_t light) const;
-    /// How bright a light from infinity ever is on a surface that faces it, lux; 0 for the others.
+    /// Largest illuminance by a light from infinity on a facing surface, lux; 0 for other lights.
     float infinite_weight(std::size_t light) const;
     const std::optional<Environment>& environment() const { return environment_; }
 
@@ -236,18 +231,18 @@ class LightSet {
     std::optional<Environment> environment_;
     LightMotion motion_;
     LightProfiles profiles_;
-    std::vector<const Keyed<Light>*> keys_;  // by light, into motion_; empty: none changes
+    std::vector<const Keyed<Light>*> keys_;  // per light, pointers into motion_; empty: no light changes
     LightTree tree_;
-    std::vector<TriangleSampler> triangles_;  // by tree index, and the number of any light there
-    std::vector<std::int32_t> tree_index_;    // and back; kNone: dark
+    std::vector<TriangleSampler> triangles_;  // per tree index; also holds the index of the light
+    std::vector<std::int32_t> tree_index_;    // per light; kNone: dark
     DiscreteDistribution infinite_;
     std::vector<std::int32_t> infinite_lights_;  // light, or kEnvironment
-    float infinite_illuminance_ = 0;  // lux, all together, on a surface that faces them
-    float environment_pmf_ = 0;       // within the group
-    std::vector<std::uint32_t> spheres_;  // light by sphere
+    float infinite_illuminance_ = 0;  // lux, sum on facing surfaces
+    float environment_pmf_ = 0;       // in the group of infinite lights
+    std::vector<std::uint32_t> spheres_;  // light of each sphere
     std::vector<std::int64_t>
-        first_slot_;  // by instance, into triangle_slots_; -1: no lights
-    std::vector<std::int32_t> triangle_slots_;  // light by primitive; kNone
+        first_slot_;  // per instance, index into triangle_slots_; -1: no lights
+    std::vector<std::int32_t> triangle_slots_;  // light of each primitive, or kNone
 };
 
 }  // namespace dg

@@ -1,22 +1,21 @@
-// light_bounds.h -- where a light may shine, and bounds of several together.
+// light_bounds.h -- bounds of lights in position, direction and intensity.
 #pragma once
 #include "math/vec.h"
 
 namespace dg {
 
-/// Where a light (or a group) is and where it may shine: a box, and directions within
-/// `spread` of the axis, from which emission goes on for `falloff` (weakened by the
-/// cosine) and is 0 beyond.
+/// Bounds of a light or a group: a box, and a cone of normals of half angle `spread` around the axis. Emission extends
+/// beyond the normals by the angle `falloff`, with a cosine falloff, and is 0 outside.
 struct LightBounds {
     Vec3f min, max;           // m
     Vec3f axis{0, 0, 1};      // unit
-    float spread = kPi;       // rad; pi: all around
+    float spread = kPi;       // rad; pi: all directions
     float falloff = kPi / 2;  // rad
-    float intensity = 0;      // cd, largest over the directions
-    bool two_sided = false;   // shines along -axis as well
+    float intensity = 0;      // cd, maximum over directions
+    bool two_sided = false;   // also emits along -axis
 };
 
-/// Bounds of both.
+/// Union of bounds.
 LightBounds merge(const LightBounds& a, const LightBounds& b);
 
 }  // namespace dg

@@ -1,4 +1,4 @@
-// light_choice.cpp -- the choice of a light by itself, for whoever samples it from elsewhere than it was chosen for.
+// light_choice.cpp -- chooses a light without sampling it, for sampling from another point.
 #include "light/emitter.h"
 #include "light/light.h"
 #include "light/light_way.h"
@@ -17,7 +17,7 @@ std::optional<LightSet::Choice> LightSet::choose(float u, const LightWay& way) c
     LightTree::Weights weights;
     weights.sum = 0;
     if (!tree_.empty()) weights = tree_.weigh(way);
-    // Light from infinity falls on all of the way, and is scattered by the mean over all angles.
+    // Light from infinity reaches the whole segment; its scattering is estimated by the mean of the phase function.
     const float lit = std::min(way.length, 1 / std::max(way.extinction, kLeastExtinction));
     const float p_infinite = infinite_share(weights.sum * kPi / lit);
     if (u < p_infinite) {

@@ -1,4 +1,4 @@
-// light_keys.cpp -- lights between keys, and bounds over all keys.
+// light_keys.cpp -- interpolation of lights between keys, and bounds over all keys.
 #include "light/light_keys.h"
 
 #include "light/emitter_check.h"
@@ -15,8 +15,8 @@ Vec3f on_the_way(Vec3f a, Vec3f b, float share) {
             on_the_way(a.z, b.z, share)};
 }
 
-/// Along the great circle; the angle by atan2, as in slerp() of quaternion.h. Opposite directions
-/// have none: they go by any.
+/// Interpolates along the great circle, with the angle from atan2 as in slerp() of quaternion.h. Opposite directions
+/// use an arbitrary great circle.
 Vec3f turn_toward(Vec3f a, Vec3f b, float share) {
     const float angle = 2 * atan2(length(b - a), length(a + b));
     if (angle < 1e-4f) return normalize(on_the_way(a, b, share));
@@ -25,7 +25,7 @@ Vec3f turn_toward(Vec3f a, Vec3f b, float share) {
     return normalize(a * std::cos(share * angle) + normalize(side) * std::sin(share * angle));
 }
 
-// The bindings name every field, so that a new one does not compile until it has its place here.
+// Structured bindings name every field, so that a new field does not compile until it is listed here.
 PointLight between(const PointLight& a, const PointLight& b, float s) {
     const auto& [position, intensity, range, lamp] = b;
     return {on_the_way(a.position, position, s), on_the_way(a.intensity, intensity, s),
@@ -76,7 +76,7 @@ void check_keys(std::span<const Light> keys, const std::string& where) {
     }
 }
 
-/// Whether the profile of a lamp turns.
+/// Whether the profile of a lamp rotates.
 static bool turns(const Keyed<Light>& keys) {
     const LampShape* first = lamp_of(keys.values[0]);
     return first && first->used() && std::ranges::any_of(keys.values, [&](const Light& key) {
@@ -99,7 +99,7 @@ LightBounds bounds_over(const Keyed<Light>& keys) {
         }
     }
     all.intensity = std::max(intensity, luminance * kPi * radius * radius);
-    if (turns(keys)) all.spread = kPi, all.falloff = kPi / 2;   // its axis may leave the cone around those of the keys
+    if (turns(keys)) all.spread = kPi, all.falloff = kPi / 2;   // its axis may leave the cone of the keys' axes
     return all;
 }
 
@@ -110,8 +110,8 @@ float brightest(const Keyed<Light>& directional) {
     return most;
 }
 
-/// Paths that are arcs of less than a right angle leave the box of their ends by no more than 0.21
-/// of the chord, and normals the cone around two of them by no more than half the angle between.
+/// Arcs of less than a right angle leave the box of their ends by at most 0.21 of the chord, and normals leave the cone
+/// around both ends by at most half of the angle between them.
 LightBounds bounds_over(std::span<const TriangleLight> steps, Rgb luminance) {
     LightBounds all;
     float area = 0, longest = 0, widest = 0;

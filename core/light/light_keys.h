@@ -1,4 +1,4 @@
-// light_keys.h -- lights that move, turn and dim while the shutter is open.
+// light_keys.h -- lights with animated pose and brightness while the shutter is open.
 #pragma once
 #include <span>
 
@@ -7,24 +7,23 @@
 
 namespace dg {
 
-/// `share` of the way from a to b, which are of one kind: positions, colours, radii and angles go
-/// straight, directions along the great circle at constant speed. A range that is infinite at one
-/// end only stays as it is until the next key.
+/// Interpolates between two lights of the same kind: positions, colours, radii and angles linearly, directions along
+/// the great circle at constant speed. A range that is infinite in only one of both stays constant until the next key.
 Light blend(const Light& a, const Light& b, float share);
 
-/// Throws Error that starts with `where`: a key that is no light, or of another kind than the
-/// first; triangles, which move with their instance.
+/// Throws Error that starts with `where`: for an invalid light, a key of another kind than the first, and triangles,
+/// which move with their instance.
 void check_keys(std::span<const Light> keys, const std::string& where);
 
-/// Where the light may be and shine at some time: what holds at two neighbouring keys holds between
-/// them. Intensity 0: it never shines, or is at infinity.
+/// Bounds of a light over all times; bounds of two neighbouring keys also hold between them. Intensity 0: never emits,
+/// or is at infinity.
 LightBounds bounds_over(const Keyed<Light>& keys);
 
-/// The brightest that the light from infinity ever is, by selection_weight.
+/// Largest selection_weight over time of a light from infinity.
 float brightest(const Keyed<Light>& directional);
 
-/// Bounds of a triangle that moves. `steps` are its places one after the other; between two of them
-/// it turns by less than a right angle. `luminance` is the largest mean that it has.
+/// Bounds of a moving triangle. `steps`: its positions over time; it rotates by less than a right angle between two
+/// steps. `luminance`: its largest mean.
 LightBounds bounds_over(std::span<const TriangleLight> steps, Rgb luminance);
 
 }  // namespace dg

@@ -1,5 +1,5 @@
-// light_keys_test.cpp -- lights that change: at each time a set of them brings what the same lights,
-// standing still as they are then, bring.
+// light_keys_test.cpp -- animated lights: at each time they give the same light as static lights with the parameters of
+// that time.
 #include "light/light_keys.h"
 
 #include <doctest/doctest.h>
@@ -27,7 +27,7 @@ Vec3f random_point(int purpose, int i) {
             random(purpose, 3 * i + 2) * 4 - 2};
 }
 
-/// Irradiance on a ball at `position` (no cosine), by the estimator.
+/// Estimated irradiance on a ball at `position` (no cosine).
 double fluence(const LightSet& lights, Vec3f position, float time, int n) {
     double sum = 0;
     for (int i = 0; i < n; ++i) {
@@ -38,7 +38,7 @@ double fluence(const LightSet& lights, Vec3f position, float time, int n) {
     return sum;
 }
 
-/// A triangle that turns about the x axis through `center`, `turns` times over the interval.
+/// A triangle that rotates about the x axis through `center`, `turns` times over the interval.
 bool turn(TriangleLight& t, Vec3f center, float turns, float time) {
     const float angle = 2 * kPi * turns * time, c = std::cos(angle), s = std::sin(angle);
     for (Vec3f* p : {&t.a, &t.b, &t.c}) {
@@ -56,7 +56,7 @@ struct Changing {
         motion.keys[std::uint32_t(lights.size())] = keys;
         lights.push_back(keys.values[0]);
     }
-    /// The same lights as they are at a time.
+    /// The lights at a time.
     LightSet still(float time) const {
         std::vector<Light> now = lights;
         for (const auto& [i, keys] : motion.keys) now[i] = keys.at(time);
@@ -67,7 +67,7 @@ struct Changing {
     LightSet set() const { return LightSet(lights, std::nullopt, LightChoice::tree, motion); }
 };
 
-/// One of each kind, all of which move, turn and dim.
+/// Lights of every kind with animated pose and brightness.
 Changing lamps() {
     Changing c;
     c.add({{0, 0.4f, 1},
@@ -76,7 +76,7 @@ Changing lamps() {
     c.add({{0, 1},
            {SpotLight{{0, 0, 3}, {1, 0, 0}, {9, 9, 9}, 0.2f, 0.4f},
             SpotLight{{0, 1, 3}, normalize(Vec3f{-1, 1, 0}), {2, 2, 2}, 0, 0.6f}}});
-    c.add({{0, 0.5f, 0.5f, 1},  // switched off, then on and brighter
+    c.add({{0, 0.5f, 0.5f, 1},  // off, then on with rising brightness
            {SphereLight{{{3, 3, 0}, 0.2f}, {20, 20, 20}}, SphereLight{{{3, 3, 0}, 0.2f}, {0, 0, 0}},
             SphereLight{{{-3, 3, 0}, 0.4f}, {0, 0, 0}}, SphereLight{{{0, 3, 3}, 0.1f}, {90, 90, 90}}}});
     c.add({{0, 1},
@@ -137,7 +137,7 @@ TEST_CASE("a triangle that turns: sampled where it is, with the density it has t
     c.lights.push_back(TriangleLight{{-1, 2, -1}, {1, 2, -1}, {0, 2, 1}, {5, 5, 5}, 3, 7, false});
     c.lights.push_back(PointLight{{2, -2, 1}, {1, 1, 1}});
     const auto place = [&](TriangleLight& t, float time) {
-        return time < 0.8f && turn(t, center, 0.7f, time);  // gone in the end
+        return time < 0.8f && turn(t, center, 0.7f, time);  // hidden at the end
     };
     std::vector<TriangleLight> steps;
     for (int i = 0; i <= 32; ++i) {
@@ -208,7 +208,7 @@ TEST_CASE("a sky that turns and dims: its light moves with it, and so do samples
     const Environment sky = still.posed(
         {{0, 0.5f, 1}, {{{1, 1, 1}, 0}, {{3, 3, 3}, 2}, {{0, 0, 0}, 9}}});
     CHECK(sky.mean_luminance() == doctest::Approx(3 * still.mean_luminance()));
-    const float time = 0.25f;  // turned by 1 rad, twice as strong
+    const float time = 0.25f;  // rotated by 1 rad, twice as bright
     for (int i = 0; i < 500; ++i) {
         const Vec3f d = normalize(random_point(1, i));
         const Vec3f turned{std::cos(1.f) * d.x + std::sin(1.f) * d.z, d.y,

@@ -12,11 +12,11 @@ namespace {
 
 constexpr double kTwoPiD = 2 * kPiD;
 constexpr const char* kWhere = "light profile";
-constexpr double kLongestStep = kPiD / 180;   // of the quadrature, rad
-constexpr int kMostSteps = 20000;             // however narrow the focus
-// Most knots of theta, least of phi, and most cells of the quadrature, however fine a table of a stranger is.
+constexpr double kLongestStep = kPiD / 180;   // rad: largest step of the quadrature
+constexpr int kMostSteps = 20000;             // limit for narrow foci
+// Limits of knots and cells of the quadrature, for arbitrarily fine tables from files.
 constexpr std::size_t kMostThetas = 32768, kLeastPhis = 64, kMostCells = 1 << 20;
-// Gauss-Legendre points and weights of [-1, 1], three each way: exact to the fifth power.
+// Three-point Gauss-Legendre rule on [-1, 1], exact to degree 5.
 constexpr double kPoints[] = {-0.7745966692414834, 0, 0.7745966692414834};
 constexpr double kWeights[] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
 
@@ -24,7 +24,7 @@ void want(bool good, const char* what, const char* wanted, double got) {
     if (!good) throw input_error(kWhere, what, wanted, std::to_string(got));
 }
 
-/// Rising numbers within 0 .. most.
+/// Checks for ascending numbers in 0 .. most.
 void check_angles(const std::vector<float>& angles, const char* what, float most) {
     for (std::size_t i = 0; i < angles.size(); ++i) {
         want(angles[i] >= 0 && angles[i] <= most, what, "angles within the sphere", angles[i]);
@@ -59,7 +59,7 @@ void check(const ProfileParts& parts) {
     for (const ProfileTable& t : parts.tables) check(t);
 }
 
-/// Where a value lies among rising ones that hold it.
+/// Interval and fraction of a value in ascending knots.
 struct Place {
     std::size_t left, right;
     float share;
@@ -73,7 +73,7 @@ Place place_in(const std::vector<float>& knots, float v) {
 
 float mix(float a, float b, float share) { return a * (1 - share) + b * share; }
 
-/// Angle from the axis from which on a table is dark.
+/// Angle from the axis beyond which a table is 0.
 float end_of(const ProfileTable& t) {
     const std::size_t columns = t.phi.size();
     for (std::size_t i = t.theta.size(); i-- > 0;)
@@ -87,7 +87,7 @@ void sort_unique(std::vector<double>& knots) {
     knots.erase(std::unique(knots.begin(), knots.end()), knots.end());
 }
 
-/// Divides what is longer than `step`.
+/// Divides intervals that are longer than `step`.
 std::vector<double> divided(const std::vector<double>& knots, double step) {
     std::vector<double> all;
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
@@ -99,7 +99,7 @@ std::vector<double> divided(const std::vector<double>& knots, double step) {
     return all;
 }
 
-/// Knots, or as many even steps as there may be at most.
+/// Knots, or uniform steps if there are too many.
 std::vector<double> thinned(std::vector<double> knots, std::size_t most) {
     if (knots.size() <= most) return knots;
     const double end = knots.back();
@@ -160,13 +160,13 @@ Rgb LightProfile::at(Vec3f local) const {
     return at(theta, phi < 0 ? phi + 2 * kPi : phi);
 }
 
-/// Angles between which the parts are smooth, close enough for the quadrature.
+/// Angles between which the profile is smooth, at distances suitable for the quadrature.
 std::vector<double> LightProfile::theta_knots() const {
     std::vector<double> knots{0, kPiD / 2, kPiD};
     double step = kLongestStep;
     for (const ProfileCone& c : parts_.cones) knots.insert(knots.end(), {c.angle, double(c.angle) * (1 - c.softness)});
     for (const ProfileTable& t : parts_.tables) knots.insert(knots.end(), t.theta.begin(), t.theta.end());
-    for (const ProfileFocus& f : parts_.focuses)   // its width is that of a Gaussian of 1 / sqrt(exponent)
+    for (const ProfileFocus& f : parts_.focuses)   // similar to a Gaussian of width 1 / sqrt(exponent)
         step = std::min(step, std::max(0.2 / std::sqrt(f.exponent + 1.0), kPiD / kMostSteps));
     std::erase_if(knots, [](double k) { return k > kPiD; });
     sort_unique(knots);
@@ -181,7 +181,7 @@ std::vector<double> LightProfile::phi_knots(std::size_t thetas) const {
     return thinned(std::move(knots), std::max(kLeastPhis, kMostCells / thetas));
 }
 
-/// No factor is larger.
+/// Upper bound of all factors.
 float LightProfile::bound() const {
     float most = parts_.scale;
     for (const ProfileTable& table : parts_.tables) most *= largest(table);
@@ -189,7 +189,7 @@ float LightProfile::bound() const {
     return most;
 }
 
-/// Means by Gauss-Legendre quadrature between the knots, and the largest value at them.
+/// Computes means by Gauss-Legendre quadrature between knots, and the maximum over knots.
 void LightProfile::measure() {
     const std::vector<double> thetas = theta_knots(), phis = phi_knots(thetas.size());
     Vec3d mean{}, facing{};
@@ -212,7 +212,7 @@ void LightProfile::measure() {
         }
     }
     if (thetas.size() == kMostThetas || phis.size() == std::max(kLeastPhis, kMostCells / thetas.size()))
-        peak_ = std::max(peak_, bound());   // the steps may have missed it
+        peak_ = std::max(peak_, bound());   // uniform steps may have missed the peak
     mean_ = to_float(mean * (1 / (4 * kPiD)));
     facing_mean_ = to_float(facing * (1 / kPiD));
 }

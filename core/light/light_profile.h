@@ -1,8 +1,7 @@
-// light_profile.h -- how a lamp's light depends on direction: photometric tables, cones and focus, multiplied.
+// light_profile.h -- directional distribution of a lamp: the product of photometric tables, cones and focus.
 //
-// Directions are in the lamp's own frame, in which it shines along -z. theta is the angle from -z, the nadir of a
-// lamp that hangs; phi goes from +x toward +y, counter-clockwise for who looks along -z. Source: IES LM-63-2019,
-// type C photometry.
+// Directions are in the lamp's frame, with emission along -z. theta is the angle from -z, the nadir of a hanging lamp;
+// phi goes from +x toward +y, counter-clockwise when looking along -z. Source: IES LM-63-2019, type C photometry.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -13,7 +12,7 @@
 
 namespace dg {
 
-/// Nothing leaves farther from the axis than `angle`; from (1 - softness) of it on, light falls smoothly to 0.
+/// Emission is 0 outside `angle` from the axis, and falls smoothly to 0 from (1 - softness) `angle` on.
 /// Source: UsdLux ShapingAPI (OpenUSD 25.05 and later), shaping:cone:angle and :softness.
 struct ProfileCone {
     float angle;      // rad, (0, pi]
@@ -22,8 +21,7 @@ struct ProfileCone {
     float at(float theta) const;
 };
 
-/// |cos theta|^exponent, and `tint` in place of what that takes away. Source: UsdLux ShapingAPI, shaping:focus and
-/// :focusTint.
+/// |cos theta|^exponent, with `tint` for the removed light. Source: UsdLux ShapingAPI, shaping:focus and :focusTint.
 struct ProfileFocus {
     float exponent;   // >= 0
     Rgb tint;
@@ -31,16 +29,16 @@ struct ProfileFocus {
     Rgb at(float cosine) const;
 };
 
-/// Values at angles, bilinear in between and 0 beyond the first and last theta.
+/// Table of values by angle, with bilinear interpolation, and 0 outside the range of theta.
 struct ProfileTable {
-    std::vector<float> theta;    // rad, rising, within 0 .. pi
-    std::vector<float> phi;      // rad, rising from 0 to 2 pi; or one, of a table that does not depend on it
+    std::vector<float> theta;    // rad, ascending, in 0 .. pi
+    std::vector<float> phi;      // rad, ascending from 0 to 2 pi; or a single value if the table does not depend on phi
     std::vector<float> values;   // theta.size() rows of phi.size() values
 
     float at(float theta, float phi) const;
 };
 
-/// Parts whose factors are multiplied, and a number.
+/// Factors of a profile, and a scale.
 struct ProfileParts {
     float scale = 1;
     std::vector<ProfileCone> cones{};
@@ -50,17 +48,17 @@ struct ProfileParts {
 
 class LightProfile {
   public:
-    /// Throws Error that names part and value.
+    /// Throws Error that names the factor and the value.
     explicit LightProfile(ProfileParts parts);
 
-    /// Factor on the light that leaves along `local` (unit, in the lamp's frame).
+    /// Factor on emission along `local` (unit, in the lamp's frame).
     Rgb at(Vec3f local) const;
 
-    /// Largest factor of all channels and directions, at the angles of the parts; of huge tables an upper bound.
+    /// Largest factor over channels and directions, at the knots of the parts; an upper bound for huge tables.
     float peak() const { return peak_; }
-    float spread() const { return spread_; }   // rad from the axis: beyond there is no light; pi: there may be
+    float spread() const { return spread_; }   // rad from the axis: no emission outside; pi: unlimited
     Rgb mean() const { return mean_; }         // over all directions
-    /// Power that is left of a surface that shines evenly and faces along -z.
+    /// Factor on the power of a uniform flat emitter that faces -z.
     Rgb facing_mean() const { return facing_mean_; }
 
   private:
@@ -75,8 +73,8 @@ class LightProfile {
     Rgb mean_{}, facing_mean_{};
 };
 
-/// Axes of a lamp in the world, unit and at right angles: its z, its x as far as it is at right angles to z, and y on
-/// that side on which the transform has it. So scale and shear of a lamp do not change its profile.
+/// Orthonormal axes of a lamp in the world: z, x orthogonalized to z, and y with the handedness of the transform. Scale
+/// and shear of a lamp do not change its profile.
 struct LampAxes {
     Vec3f x, y, z;
 
@@ -85,22 +83,22 @@ struct LampAxes {
     Vec3f local(Vec3f world) const { return {dot(x, world), dot(y, world), dot(z, world)}; }
 };
 
-/// How a lamp with a profile stands in the world.
+/// Placement of a lamp's profile in the world.
 struct LampShape {
-    std::int32_t profile = -1;   // index; -1: it shines alike in all directions
+    std::int32_t profile = -1;   // index; -1: none
     Quaternionf rotation{};      // world from local
     float spread = kPi;   // of the profile
-    bool mirrored = false;       // y points the other way
+    bool mirrored = false;       // y is flipped
 
     LampShape() = default;
     LampShape(std::int32_t profile, const Affine3d& world_from_local);
     bool used() const { return profile >= 0; }
     Vec3f local(Vec3f world) const { return LampAxes(rotation, mirrored).local(world); }
-    /// Where its light goes at most.
+    /// Axis of its emission cone.
     Vec3f axis() const { return rotation.rotate({0, 0, -1}); }
 };
 
-/// `share` of the way from a to b, the profile and side of a.
+/// Interpolates rotations; profile and handedness are taken from a.
 LampShape blend(const LampShape& a, const LampShape& b, float share);
 
 }  // namespace dg

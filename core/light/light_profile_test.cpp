@@ -1,4 +1,4 @@
-// light_profile_test.cpp -- profiles against the formulas of their parts, and lamps that have one.
+// light_profile_test.cpp -- profiles against the formulas of their factors, and lamps with profiles.
 #include "light/light_profile.h"
 
 #include <doctest/doctest.h>
@@ -24,7 +24,7 @@ Vec2f random_2d(int seed, int i) {
     return {float(hash_uniform(seed, 2 * i)), float(hash_uniform(seed, 2 * i + 1))};
 }
 
-/// Depends on both angles, peaks aside of the axis, and is dark beyond 100 degrees.
+/// A table that depends on both angles, has an off-axis peak, and is 0 beyond 100 degrees.
 ProfileTable skew() {
     ProfileTable t{{0, 20 * kDegree, 60 * kDegree, 100 * kDegree}, {0, kPi / 2, kPi, 2 * kPi}, {}};
     t.values = {5, 5, 5, 5, 9, 7, 2, 9, 4, 1, 3, 4, 0, 0, 0, 0};
@@ -36,7 +36,7 @@ std::shared_ptr<const LightProfile> shared_profile(ProfileParts parts) {
     return std::make_shared<const LightProfile>(std::move(parts));
 }
 
-/// Mean over the sphere, and of a surface that faces -z, by random directions.
+/// Mean over the sphere, and cosine-weighted mean for a surface that faces -z, by random directions.
 struct Means {
     double all = 0, facing = 0;
 };
@@ -61,7 +61,7 @@ LightSet one(Light light, std::shared_ptr<const LightProfile> profile, LightMoti
     return LightSet({std::move(light)}, std::nullopt, LightChoice::tree, std::move(motion), {{std::move(profile)}, {}});
 }
 
-/// A turn about an axis that is none of the frame.
+/// A rotation about an oblique axis.
 Affine3d turned(double angle) {
     return to_matrix(Quaterniond::from_axis_angle(normalize(Vec3d{1, 2, -0.5}), angle));
 }

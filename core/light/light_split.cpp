@@ -1,6 +1,6 @@
 // light_split.cpp -- the surface area orientation heuristic. Source: Conty Estevez and
 // Kulla 2018, Importance Sampling of Many Lights with Adaptive Tree Splitting,
-// section 4.4; the squared radius of a group stands for its surface, as it does in the
+// section 4.4, with the squared radius of a group in place of its surface area, as in the
 // tree's estimate.
 #include "light/light_split.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kBins = 12;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Lights that are looked at to find the cut, at most.
+// Limit of lights that are evaluated to find a split.
 constexpr std::size_t kLooks = 2048;
 
 Vec3f component_min(Vec3f a, Vec3f b) {
@@ -49,20 +49,20 @@ Vec3f twice_center(const LightBounds& b) {
 
 struct Cut {
     float cost = kInfinity;
-    int axis = 0, bin = 0;  // bins up to here are the first group
+    int axis = 0, bin = 0;  // last bin of the first group
 };
 
-/// Bins by the place of centres along the axes.
+/// Bins of box centers along the axes.
 struct Grid {
-    Vec3f low, high;   // of twice the centres
+    Vec3f low, high;   // bounds of twice the centers
 
     int bin(const LightBounds& b, int axis) const {
         const float x = (twice_center(b)[axis] - low[axis]) / (high[axis] - low[axis]) * kBins;
-        return x > 0 ? static_cast<int>(std::min(x, float(kBins - 1))) : 0;   // NaN, where places overflow: 0
+        return x > 0 ? static_cast<int>(std::min(x, float(kBins - 1))) : 0;   // 0 for NaN by overflow
     }
 };
 
-/// Lights of a bin, or of several.
+/// Sums over the lights of bins.
 struct Bin {
     Vec3f min{kInfinity, kInfinity, kInfinity}, max = -min;
     Vec3f heading;   // sum of LightItem::heading
@@ -81,8 +81,8 @@ struct Bin {
         two_sided |= b.two_sided;
     }
     bool empty() const { return intensity == 0; }
-    /// Solid angle into which the group shines, weakened by the cosine: pi of normals that are one, 4 pi of normals all
-    /// around. Between them within 7 % of the integral over a cap of normals, whose mean is heading / intensity.
+    /// Cosine-weighted solid angle of emission: pi for equal normals, 4 pi for normals in all directions. Otherwise
+    /// within 7 % of the integral over a cap of normals with the mean heading / intensity.
     float orientation_measure() const {
         const float r2 = length_squared(heading) / (intensity * intensity);
         const float one_side = kPi * (4 - 3 * r2 * r2);
@@ -92,7 +92,7 @@ struct Bin {
 };
 using BinRow = std::array<Bin, kBins>;
 
-/// The cheapest cut along one axis. At an empty bin the groups are those of the cut before.
+/// The cheapest split along an axis. Empty bins do not change the groups.
 Cut best_cut(const BinRow& bins, int axis) {
     std::array<float, kBins> above{};  // cost of all bins beyond
     Bin all;
@@ -112,7 +112,7 @@ Cut best_cut(const BinRow& bins, int axis) {
     return best;
 }
 
-/// The cheapest cut of all.
+/// The cheapest split over all axes.
 Cut best_cut(std::span<const LightItem> lights, const Grid& grid) {
     std::array<BinRow, 3> bins;
     const Vec3f size = grid.high - grid.low;
@@ -124,13 +124,13 @@ Cut best_cut(std::span<const LightItem> lights, const Grid& grid) {
     for (int axis = 0; axis < 3; ++axis) {
         if (!(size[axis] > 0)) continue;
         Cut cut = best_cut(bins[axis], axis);
-        cut.cost *= max_component(size) / size[axis];  // no thin slices
+        cut.cost *= max_component(size) / size[axis];  // avoids thin slices
         if (cut.cost < best.cost) best = cut;
     }
     return best;
 }
 
-/// At the median of the longer side of the box of centres.
+/// Splits at the median along the longest side of the centers' box.
 std::size_t halve_lights(std::span<LightItem> lights, const Grid& grid) {
     const Vec3f size = grid.high - grid.low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -138,12 +138,12 @@ std::size_t halve_lights(std::span<LightItem> lights, const Grid& grid) {
     std::nth_element(lights.begin(), lights.begin() + std::ptrdiff_t(half), lights.end(),
                      [&](const LightItem& a, const LightItem& b) {
                          const float ca = twice_center(a.bounds)[axis], cb = twice_center(b.bounds)[axis];
-                         return ca != cb ? ca < cb : a.light < b.light;  // one order on every machine
+                         return ca != cb ? ca < cb : a.light < b.light;  // the same order on every platform
                      });
     return half;
 }
 
-/// Those of the first group to the front; both keep their order.
+/// Stable partition into the two groups.
 template <typename IsFirst>
 std::size_t part(std::span<LightItem> lights, std::span<LightItem> room, const IsFirst& is_first) {
     std::size_t first = 0, second = 0;

@@ -1,4 +1,4 @@
-// light_split.h -- where a group of lights is cut in two.
+// light_split.h -- splits a group of lights for the light tree.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -7,21 +7,21 @@
 
 namespace dg {
 
-/// A light while a tree is built.
+/// A light during construction of the tree.
 struct LightItem {
     LightBounds bounds;
-    Vec3f heading;      // mean of its normals, times intensity
+    Vec3f heading;      // mean normal times intensity
     std::int32_t light;
 
     LightItem() = default;
     LightItem(const LightBounds& bounds, std::int32_t light);
 };
 
-/// Box and intensity of all together; no more of the bounds.
+/// Box and total intensity of lights; other bounds are not set.
 LightBounds box_of(std::span<const LightItem> lights);
 
-/// Reorders the lights so that two groups follow each other, each small and shining one way as far as possible;
-/// returns the size of the first (neither is empty). `room`: as many, to sort in. `halve`: by number.
+/// Partitions the lights into two nonempty groups that are compact in position and direction; returns the size of the
+/// first. `room`: buffer of the same size. `halve`: splits by number.
 std::size_t split_lights(std::span<LightItem> lights, std::span<LightItem> room, bool halve);
 
 }  // namespace dg

@@ -1,4 +1,4 @@
-// light_test.cpp -- each kind of light against closed forms; samplers against densities.
+// light_test.cpp -- every kind of light against closed forms; samples against densities.
 #include "light/light.h"
 
 #include <doctest/doctest.h>
@@ -11,8 +11,7 @@ using namespace dg;
 
 namespace {
 
-/// Lanes are red, green, blue and white: lights can be tested without the tables of
-/// spectrum/.
+/// Wavelengths with the lanes red, green, blue and white, to test lights without the tables of spectrum/.
 Wavelengths rgb_lanes() {
     Wavelengths w;
     w.red = {1, 0, 0, 1 / 3.f};
@@ -26,7 +25,7 @@ Vec2f uniform_2d(int i) {
     return {float(hash_uniform(5, 2 * i)), float(hash_uniform(5, 2 * i + 1))};
 }
 
-/// Illuminance (white lane) on a facet, by the estimator.
+/// Estimated illuminance (white lane) on a facet.
 double illuminance(const LightSet& lights, Vec3f position, Vec3f normal, int n = 40000) {
     double sum = 0;
     for (int i = 0; i < n; ++i) {
@@ -90,8 +89,8 @@ namespace {
 
 constexpr double degrees(double angle) { return angle * kPiD / 180; }
 
-/// Illuminance of a facet that is tilted from an even disc of half angle h by so much, over that of one that faces it:
-/// the integral of the cosine over what is above the facet.
+/// Illuminance by a uniform disc of half angle h on a facet at an angle to it, relative to a facing facet: the integral
+/// of the cosine over the part of the disc above the facet.
 double seen_share(double h, double tilt) {
     constexpr int kSteps = 400;
     double sum = 0;
@@ -122,9 +121,9 @@ TEST_CASE("a sun with an angle: its illuminance on what faces it, and what of th
             CHECK(std::abs(illuminance(one(sun), {1, 2, 3}, normal, 400000) - wanted) < 0.03);
         }
     }
-    CHECK(seen_share(degrees(10), degrees(60)) == doctest::Approx(0.5).epsilon(1e-4));   // in full view: the cosine
-    CHECK(seen_share(degrees(90), degrees(60)) == doctest::Approx(0.75).epsilon(1e-4));  // half a sphere of sky
-    CHECK(seen_share(degrees(180), degrees(140)) == doctest::Approx(1).epsilon(1e-4));   // all of one
+    CHECK(seen_share(degrees(10), degrees(60)) == doctest::Approx(0.5).epsilon(1e-4));   // fully visible: the cosine
+    CHECK(seen_share(degrees(90), degrees(60)) == doctest::Approx(0.75).epsilon(1e-4));  // a hemisphere
+    CHECK(seen_share(degrees(180), degrees(140)) == doctest::Approx(1).epsilon(1e-4));   // a full hemisphere
 }
 
 TEST_CASE("chi-square: directions of a sun with an angle fall evenly on its disc, and on no other") {
@@ -140,7 +139,7 @@ TEST_CASE("chi-square: directions of a sun with an angle fall evenly on its disc
         CHECK(p_value(1) > 1e-3);
         CHECK(p_value(1.04) < 1e-6);
     }
-    // The sun of the earth, where cosines have hardly any digits: squares of the sine are even.
+    // The size of the sun, where cosines lose precision: sin^2 is uniformly distributed.
     const DirectionalLight sun = sun_of(degrees(0.53));
     double sum = 0, most = 0;
     for (int i = 0; i < 100000; ++i) {
@@ -206,7 +205,7 @@ TEST_CASE("chi-square: directions toward spheres and triangles follow their dens
         const SphereLight light{c.sphere, {1, 1, 1}};
         DirectionGrid grid;
         const Vec3f to = light.shape.center - position;
-        if (!c.whole) {  // the cone itself is the grid: its edge is the test's edge
+        if (!c.whole) {  // the grid covers exactly the cone
             grid.frame = Frame::from_normal(normalize(to));
             grid.cos_min = std::sqrt(1 - double(light.shape.radius) * light.shape.radius /
                                              length_squared(to));
@@ -225,7 +224,7 @@ TEST_CASE("chi-square: directions toward spheres and triangles follow their dens
 
     const TriangleLight t = triangle({-1, 1.5f, -1}, {2, 1, 0.5f}, {-0.5f, 2, 1.5f});
     const Vec3f e1 = t.b - t.a, e2 = t.c - t.a, n = normalize(cross(e1, e2));
-    auto pdf = [&](Vec3f w) -> double {  // Moeller and Trumbore 1997, in plain form
+    auto pdf = [&](Vec3f w) -> double {  // Moeller and Trumbore 1997
         const Vec3f pv = cross(w, e2), tv = position - t.a, qv = cross(tv, e1);
         const float det = dot(e1, pv), u = dot(tv, pv) / det, v = dot(w, qv) / det,
                     d = dot(e2, qv) / det;
@@ -298,7 +297,7 @@ TEST_CASE("sample().pdf is what the pdf functions say of the same direction") {
 
 namespace {
 
-/// The mean of several samples at once in place of one.
+/// Estimate as the mean of several joint samples.
 double illuminance_by_several(const LightSet& lights, Vec3f position, Vec3f normal, int n) {
     double sum = 0;
     std::array<LightSample, LightSet::kMostSamples> found;
@@ -323,7 +322,7 @@ TEST_CASE("the sum of many lights and a sky is the sum of each") {
         expected += p.y / std::pow(length_squared(p), 1.5);
     }
     lights.push_back(DirectionalLight{{0, -1, 0}, {0.1f, 0.1f, 0.1f}});
-    lights.push_back(PointLight{{0, 1, 0}, {0, 0, 0}});  // dark ones are never chosen
+    lights.push_back(PointLight{{0, 1, 0}, {0, 0, 0}});  // dark lights are never chosen
     expected += 0.1;
     const EnvironmentImage even{4, 2, std::vector<Rgb>(8, Rgb{0.2f, 0.2f, 0.2f})};
     const LightSet set(lights, Environment::image(even, 1, {}));

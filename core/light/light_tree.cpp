@@ -1,4 +1,4 @@
-// light_tree.cpp -- choosing from the tree of lights.
+// light_tree.cpp -- chooses lights from the light tree.
 #include "light/light_tree.h"
 
 #include <algorithm>
@@ -13,14 +13,14 @@ namespace {
 
 constexpr int kWide = LightNode::kWide;
 
-float larger(float a, float b) {  // by value, so that loops over it become SIMD
+float larger(float a, float b) {  // by value, so that loops are vectorized
     return a > b ? a : b;
 }
 
-/// Upper bound of the cosine at the emitter over the box, times intensity, over squared distance; inside the sphere
-/// around the box the distance is not known better than its radius. Without branches, for four at once.
+/// Upper bound of the cosine at the emitter over the box, times intensity over squared distance; inside the sphere
+/// around the box, the distance is bounded by its radius. Without branches, for four children at a time.
 inline float estimate(const LightEmission& e, Vec3f position) {
-    // Cosines and sines are all times the distance, so that the roots wait for nothing but d2, and not for each other.
+    // Cosines and sines are scaled by the distance, so that square roots depend only on d2 and run in parallel.
     const Vec3f to = position - e.center;
     const float d2 = length_squared(to), radius2 = e.radius * e.radius;
     const float inverse_d2 = 1 / larger(larger(d2, radius2), 1e-20f);
@@ -30,7 +30,7 @@ inline float estimate(const LightEmission& e, Vec3f position) {
     const float sin_axis = std::sqrt(larger(d2 - cos_axis * cos_axis, 0.f));
     const float cos_box = std::sqrt(larger(d2 - radius2, 0.f));
     const float sin_spread = std::sqrt(larger(1 - e.cos_spread * e.cos_spread, 0.f));
-    // theta' = max(0, theta - spread - angle under which the sphere is seen)
+    // theta' = max(0, theta - spread - angular radius of the sphere)
     const bool within = cos_axis > e.cos_spread * d;
     const float cos_1 = within ? d : cos_axis * e.cos_spread + sin_axis * sin_spread;
     const float sin_1 = within ? 0.f : sin_axis * e.cos_spread - cos_axis * sin_spread;
@@ -45,11 +45,11 @@ inline float estimate(const LightEmission& e, Vec3f position) {
     return behind ? 0.f : some;
 }
 
-/// Weights of a node's children; their sum.
+/// Computes the weights of a node's children; returns their sum.
 inline float weigh_node(const LightNode& node, Vec3f position, float* weights) {
     const auto& n = node.facts;
     const bool around = larger(larger(n[8][0], n[8][1]), larger(n[8][2], n[8][3])) <= -1;
-    if (around) {   // bulbs, which need no cosines: estimate() without them, to the bit
+    if (around) {   // point lights without cosines; bit-identical to estimate()
         for (int i = 0; i < kWide; ++i) {
             const float d2 = length_squared(position - Vec3f{n[0][i], n[1][i], n[2][i]});
             weights[i] = n[7][i] * (1 / larger(larger(d2, n[3][i] * n[3][i]), 1e-20f));
@@ -63,8 +63,8 @@ inline float weigh_node(const LightNode& node, Vec3f position, float* weights) {
     return (weights[0] + weights[1]) + (weights[2] + weights[3]);
 }
 
-/// One of them by its weight; leaves u for the next choice. Counted, not searched: which one it is cannot be foreseen
-/// by the processor.
+/// Chooses a child by weight, and rescales u for the next choice. Counts instead of searching, to avoid unpredictable
+/// branches.
 template <std::size_t n>
 std::size_t choose(const float* weights, float sum, float& u) {
     const float target = u * sum;
@@ -76,7 +76,7 @@ std::size_t choose(const float* weights, float sum, float& u) {
         chosen += beyond;
         before = beyond ? below : before;
     }
-    // Rounding may run past the last one that shines; very near to a very bright one floats overflow.
+    // Rounding may run past the last child with a positive weight; weights overflow very close to very bright lights.
     while (chosen > 0 && !(weights[chosen] > 0)) --chosen;
     u = std::clamp((target - before) / weights[chosen], 0.f, kBelowOne);
     return chosen;
@@ -107,14 +107,14 @@ LightTree::Weights LightTree::weigh(const Where& where) const {
 template LightTree::Weights LightTree::weigh(const Vec3f&) const;
 template LightTree::Weights LightTree::weigh(const LightWay&) const;
 
-/// `weights` are of some light.
+/// At least one of `weights` is positive.
 LightTree::Descent LightTree::start(const Weights& top, float u) const {
     const std::size_t first = has_second() ? choose<2 * kWide>(top.of.data(), top.sum, u)
                                            : choose<kWide>(top.of.data(), top.sum, u);
     return {nodes_[first / kWide].next[first % kWide], top.of[first] / top.sum, u};
 }
 
-/// A node down. Where nothing shines it ends, with probability 0.
+/// Descends one level; ends with probability 0 if no child has a positive weight.
 template <typename Where>
 void LightTree::descend(Descent& d, const Where& where) const {
     const LightNode& node = nodes_[d.next];
@@ -160,7 +160,7 @@ void LightTree::sample(const Weights& top, Vec3f position, std::span<const float
 
 float LightTree::probability(Vec3f position, int light) const {
     if (lone()) return 1;
-    std::array<std::int32_t, kLightTreeDepth> way;   // places, the light's first
+    std::array<std::int32_t, kLightTreeDepth> way;   // child positions, from the light up
     int depth = 0;
     for (std::int32_t place = place_[light]; place >= 0; place = parent_[place / kWide]) way[depth++] = place;
     const Weights top = weigh(position);

@@ -1,7 +1,7 @@
-// light_tree.h -- a tree of lights with a place, from which one is chosen for a shaded point with a probability
-// close to the illuminance that it may bring there; O(log n). Source: Conty Estevez and Kulla 2018, Importance
-// Sampling of Many Lights with Adaptive Tree Splitting. Four children lie side by side in three lines of the cache
-// and are weighed at once: a binary tree loads six times as many lines, and waits for them.
+// light_tree.h -- a tree of lights with a position. Chooses a light for a shading point with a probability close to
+// proportional to its unoccluded illuminance, in O(log n). Source: Conty Estevez and Kulla 2018, Importance Sampling of
+// Many Lights with Adaptive Tree Splitting. The four children of a node are stored in three cache lines and weighed
+// together; a binary tree would load six times as many lines in sequence.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,14 +13,14 @@
 
 namespace dg {
 
-/// Facts that the estimate of a light or a group needs.
+/// Data for the estimate of a light or a group.
 struct LightEmission {
     Vec3f center;       // of the sphere around the box, m
     float radius;       // m
     Vec3f axis;
-    float intensity;    // cd; 0: none there
+    float intensity;    // cd; 0: empty
     float cos_spread, cos_falloff;
-    float reach;        // m; what lies farther behind the centre along the axis is dark. -1: shines along -axis as well
+    float reach;        // m: points farther behind the center along the axis are dark. -1: emits along -axis, too
 };
 
 /// Four lights or groups.
@@ -30,7 +30,7 @@ struct alignas(64) LightNode {
     float facts[kFacts][kWide] = {};
     std::int32_t next[kWide] = {};   // node of a group, or ~light
 
-    LightNode() {   // children that are not there shine with intensity 0, all around as others may
+    LightNode() {   // missing children have intensity 0
         for (float& cos_spread : facts[8]) cos_spread = -1;
     }
 };
@@ -38,16 +38,16 @@ struct alignas(64) LightNode {
 class LightTree {
   public:
     LightTree() = default;
-    /// Every intensity must be > 0.
+    /// Intensities must be positive.
     explicit LightTree(std::span<const LightBounds> lights);
 
     bool empty() const { return nodes_.empty(); }
     std::size_t size() const { return place_.size(); }
-    /// One light alone: it is chosen without a look, wherever it shines.
+    /// A tree of a single light, which is chosen without evaluating its estimate.
     bool lone() const { return place_.size() == 1; }
-    /// Illuminance that the lights and groups of the first two nodes bring to a point: one group alone knows too
-    /// little where lights surround the point. The sum is an estimate of the illuminance (lux) by all together. `where`
-    /// is a point, or a way through a medium (LightWay, light_way.h) for what it scatters once.
+    /// Estimated illuminance (lux) by the children of the first two nodes; their sum estimates the total. A single
+    /// group would be inaccurate for points surrounded by lights. `where`: a point, or a segment in a medium (LightWay,
+    /// light_way.h) for single scattering.
     struct Weights {
         std::array<float, 2 * LightNode::kWide> of;
         float sum;
@@ -60,19 +60,20 @@ class LightTree {
         int light;
         float probability;
     };
-    /// Empty where no light shines. A light that can reach the position, or any place of the way, has probability > 0.
+    /// Chooses a light; empty if no light reaches the position. Every light that can reach the position, or a point of
+    /// the segment, has a positive probability.
     std::optional<Choice> sample(Vec3f position, float u) const { return sample(weigh(position), position, u); }
-    /// The same with weigh() at hand, which a lone light has no use for.
+    /// Chooses a light by the result of weigh(), which is not used for a single light.
     template <typename Where>
     std::optional<Choice> sample(const Weights& weights, const Where& where, float u) const;
-    /// Each `u` by itself as sample() would have it, probability 0 where that is empty; side by side, as the processor
-    /// waits for each.
+    /// Chooses a light for each `u` like sample(), with probability 0 instead of an empty result. Choices are
+    /// interleaved, to hide memory latency.
     void sample(const Weights& weights, Vec3f position, std::span<const float> u, std::span<Choice> found) const;
-    /// Choice::probability of sample(), to the bit.
+    /// Choice::probability of sample(), bit-identical.
     float probability(Vec3f position, int light) const;
 
   private:
-    /// A light that is being chosen: the node that is next, or ~light.
+    /// State of a choice: the next node, or ~light.
     struct Descent {
         std::int32_t next;
         float probability, u;
@@ -82,9 +83,9 @@ class LightTree {
     void descend(Descent& d, const Where& where) const;
     bool has_second() const { return nodes_.size() > 1 && parent_[1] < 0; }
 
-    std::vector<LightNode> nodes_;       // those of a subtree follow each other
-    std::vector<std::int32_t> parent_;   // by node: its place, node * kWide + which; -1: one of the first two
-    std::vector<std::int32_t> place_;    // by light
+    std::vector<LightNode> nodes_;       // subtrees are contiguous
+    std::vector<std::int32_t> parent_;   // per node: parent node * kWide + child index; -1: one of the first two
+    std::vector<std::int32_t> place_;    // per light: node * kWide + child index
 };
 
 }  // namespace dg

@@ -15,20 +15,20 @@ namespace dg {
 namespace {
 
 constexpr int kWide = LightNode::kWide;
-// Normals this close (rad) are one.
+// Angle (rad) up to which normals count as equal.
 constexpr float kFlatSpread = 1e-3f;
-// Beyond this depth lights are halved by number, so that no arrangement of them makes the tree deeper than
-// kLightTreeDepth, with at most 2^31 lights.
+// Depth beyond which groups are halved by number, so that the depth never exceeds kLightTreeDepth, for up to 2^31
+// lights.
 constexpr int kDeepest = kLightTreeDepth - 33;
-// Intensities above this count as this, so that no sum of them overflows.
+// Upper limit of intensities, so that sums do not overflow.
 constexpr float kMostIntensity = 1e28f;
-// Larger groups are built side by side.
+// Size above which groups are built in parallel.
 constexpr std::size_t kOwnTask = 4096;
 
-/// Lights of a group, with room to sort them.
+/// Lights of a group, with a buffer for sorting.
 struct Group {
     std::span<LightItem> lights, room;
-    float worth = 0;   // intensity times squared size: the largest is opened first
+    float worth = 0;   // intensity times squared size: the largest group is split first
 
     Group(std::span<LightItem> lights, std::span<LightItem> room) : lights(lights), room(room) {
         if (lights.size() < 2) return;
@@ -37,7 +37,7 @@ struct Group {
     }
 };
 
-/// The groups that a node has for children: the largest is opened until there are as many as it takes.
+/// Groups of a node's children: splits the largest until the node is full.
 struct Groups {
     std::array<std::optional<Group>, 2 * kWide> of;
     std::size_t count = 1;
@@ -73,8 +73,7 @@ LightEmission emission_of(const LightBounds& b) {
     e.cos_spread = std::cos(b.spread);
     e.cos_falloff = std::cos(b.falloff);
     e.intensity = b.intensity;
-    // Where all normals are one, the planes of the lights bound what they shine at: signs on a wall, panels of a
-    // ceiling.
+    // For lights with equal normals, such as signs on a wall or ceiling panels, their planes bound the lit half space.
     const bool flat = b.spread <= kFlatSpread && b.falloff <= kPi / 2;
     const Vec3f half = (b.max - b.min) * (0.5f + kCosineSlack);
     const Vec3f a{std::abs(b.axis.x), std::abs(b.axis.y), std::abs(b.axis.z)};
@@ -90,7 +89,7 @@ void put(LightNode& node, int place, const LightEmission& e, std::int32_t next) 
     node.next[place] = next;
 }
 
-/// Moves a branch that grew by itself to its place.
+/// Appends a branch that was built separately, with adjusted indices.
 void append(LightBranch& branch, const LightBranch& grown, std::int32_t place) {
     const auto first = std::int32_t(branch.nodes.size());
     for (LightNode node : grown.nodes) {
@@ -103,7 +102,7 @@ void append(LightBranch& branch, const LightBranch& grown, std::int32_t place) {
 
 LightBounds grow(const Group& all, int depth, LightBranch& branch, std::int32_t place);
 
-/// Gives a node its children, and what hangs from them; returns the bounds of all. Large ones grow side by side.
+/// Builds the children of a node recursively; returns the bounds of all lights. Builds large groups in parallel.
 LightBounds fill(std::int32_t node, std::span<const std::optional<Group>> groups, int depth, LightBranch& branch) {
     const auto apart = [&](std::size_t i) { return groups[i]->lights.size() > kOwnTask; };
     std::array<LightBranch, kWide> grown;
@@ -131,7 +130,7 @@ LightBounds fill(std::int32_t node, std::span<const std::optional<Group>> groups
     return bounds[0];
 }
 
-/// A node of many lights, at the end of the branch.
+/// Appends a node for a group of lights.
 LightBounds grow(const Group& all, int depth, LightBranch& branch, std::int32_t place) {
     const auto node = std::int32_t(branch.nodes.size());
     branch.nodes.emplace_back();

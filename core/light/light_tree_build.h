@@ -1,15 +1,15 @@
-// light_tree_build.h -- the tree of lights from their bounds.
+// light_tree_build.h -- builds the light tree from bounds of lights.
 #pragma once
 #include "light/light_tree.h"
 
 namespace dg {
 
-/// Rounding must not turn a light off at the very edge of its cone.
+/// Tolerance of cone angles, so that rounding does not exclude lights at the edge of their cones.
 inline constexpr float kCosineSlack = 1e-3f;
-/// Nodes from the top to a light, at most.
+/// Largest depth of a light.
 inline constexpr int kLightTreeDepth = 64;
 
-/// Nodes with what they hang from, as LightTree keeps them; the first two are the top, or the first alone.
+/// Nodes with parents, as in LightTree; the first two nodes, or the first alone, are roots.
 struct LightBranch {
     std::vector<LightNode> nodes;
     std::vector<std::int32_t> parent;

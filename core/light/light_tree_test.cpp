@@ -1,5 +1,5 @@
-// light_tree_test.cpp -- probabilities add to 1, match the samples, and never forget a
-// light that shines.
+// light_tree_test.cpp -- probabilities add to 1, match the samples, and are positive for every light that reaches a
+// point.
 #include "light/light_tree.h"
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ Vec3f random_vector(std::uint64_t stream, int i) {
             float(hash_uniform(stream, 3 * i + 2)) - 0.5f};
 }
 
-/// Small facets with normals of their own.
+/// Small facets with random normals.
 std::vector<LightBounds> random_lights(int n) {
     std::vector<LightBounds> lights(n);
     for (int i = 0; i < n; ++i) {
@@ -34,7 +34,7 @@ std::vector<LightBounds> random_lights(int n) {
     return lights;
 }
 
-/// May a point of the light's box, under some normal of its cone, shine at p?
+/// Whether a point of the light's box may illuminate p for a normal in its cone.
 bool shines(const LightBounds& b, Vec3f p) {
     const Vec3f to = normalize(p - (b.min + b.max) * 0.5f);
     float cosine = dot(to, b.axis);
@@ -61,7 +61,7 @@ TEST_CASE("probabilities: they add to 1, and no light that shines has none") {
             }
             if (const auto choice = tree.sample(p, float(hash_uniform(5, k))))
                 CHECK(choice->probability == tree.probability(p, choice->light));
-            // The missing part belongs to branches whose light turned out to face away.
+            // Branches with lights that face away account for the difference to 1.
             CHECK(sum < 1.0001);
             if (any && n == 1) CHECK(sum == doctest::Approx(1));
         }
@@ -93,7 +93,7 @@ TEST_CASE("samples follow the probabilities: chi-square, and 2 % would be notice
 }
 
 TEST_CASE("many lights: a choice weighed by its probability sums them all up, and has it to the bit") {
-    const int n = 60000, draws = 200000;   // so many that branches grow side by side
+    const int n = 60000, draws = 200000;   // enough for building branches in parallel
     const auto lights = random_lights(n);
     const LightTree tree(lights);
     const Vec3f p{9, 2, -1};
@@ -229,7 +229,7 @@ TEST_CASE("importance: the formula in angles; a cut adds up its nodes") {
                 const double slant = b.spread >= kPi ? 1 : std::cos(theta);
                 if (lit) sum += b.intensity / (d * d) * std::max(slant, 1e-3);
             }
-            if (sum < 0.01) continue;  // at the edge of a cone the rounding decides
+            if (sum < 0.01) continue;  // rounding at the edge of a cone
             ++compared;
             CHECK(LightTree(lights).importance(p) / sum == doctest::Approx(1).epsilon(0.01));
         }
@@ -261,7 +261,7 @@ TEST_CASE("lights so bright that their sum overflows are chosen, and none beyond
 }
 
 TEST_CASE("signs on a wall: dark behind their planes, none forgotten before them") {
-    // Facing one way, in two rows; the sphere around a group reaches far behind the wall.
+    // Lights with equal normals in two rows; the sphere around a group extends far behind the wall.
     std::vector<LightBounds> signs(200);
     for (int i = 0; i < 200; ++i) {
         const float x = i % 2 ? 0.f : 0.5f;
@@ -283,7 +283,7 @@ TEST_CASE("signs on a wall: dark behind their planes, none forgotten before them
             CHECK((probability > 0) == (i % 2 == 1));
             sum += probability;
         }
-        CHECK(sum > 0.9);  // the rest would be wasted on signs that face away
+        CHECK(sum > 0.9);  // the difference to 1 is wasted on signs that face away
     }
 }
 

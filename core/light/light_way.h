@@ -1,10 +1,10 @@
-// light_way.h -- how lamps are chosen for a whole way through a medium, from anywhere on which they may be sampled: by
-// what each, or a group of them, brings to the way by one scattering.
+// light_way.h -- weights for choosing lamps for a whole segment in a medium, by the single scattering of a lamp or
+// group along the segment.
 //
-// With s from the foot of the lamp's perpendicular of length h, a lamp of one candela brings the integral of
-// p / (h^2 + s^2), p the phase function, over h: p over even angles as the lamp sees the way (medium/phase_angles.h).
-// Facets of one normal shine on that part of the way alone which lies before their planes. How much less they send
-// aside was measured to matter little beside that (bench/fog.py).
+// With s measured from the foot of the lamp's perpendicular of length h, a lamp of 1 cd contributes the integral of
+// p / (h^2 + s^2) over the segment, with the phase function p: the integral of p over equiangular angles, divided by h
+// (medium/phase_angles.h). Facets with equal normals illuminate only the part of the segment in front of their planes.
+// Their cosine falloff was measured to matter little (bench/fog.py).
 #pragma once
 #include <cmath>
 #include <limits>
@@ -14,20 +14,21 @@
 
 namespace dg {
 
-/// A ray's way through an even medium.
+/// A ray segment in a homogeneous medium.
 struct LightWay {
     Vec3f origin, direction;      // unit
     float length;                 // m, may be infinite
-    float extinction;             // 1/m, the least of all wavelengths
+    float extinction;             // 1/m, minimum over wavelengths
     const PhaseAngles& angles;
 };
 
-/// Weights of a node's children; their sum. In two loops: the first one without branches, for four at once.
+/// Computes the weights of a node's children; returns their sum. The first of two loops has no branches, for
+/// vectorization over four children.
 inline float weigh_node(const LightNode& node, const LightWay& way, float* weights) {
     constexpr int kWide = LightNode::kWide;
     constexpr float kLongest = 1e9f;                   // m; squares stay finite
-    constexpr float kLeastAngle = 1e-14f;              // squared, to the line: closer, it is lost in rounding
-    constexpr float kLeastShare = 1e-6f;               // so that no lamp is forgotten
+    constexpr float kLeastAngle = 1e-14f;              // squared angle to the line, limited by rounding
+    constexpr float kLeastShare = 1e-6f;               // keeps probabilities positive
     const auto larger = [](float a, float b) { return a > b ? a : b; };
     const auto smaller = [](float a, float b) { return a < b ? a : b; };
     const float length = smaller(way.length, kLongest);
@@ -47,7 +48,7 @@ inline float weigh_node(const LightNode& node, const LightWay& way, float* weigh
         const float from = begin - foot, up_to = end - foot;
         first[i] = from / (height + std::sqrt(height2 + from * from));
         last[i] = up_to / (height + std::sqrt(height2 + up_to * up_to));
-        const float left = 1 / (1 + 0.25f * way.extinction * std::sqrt(d2));   // its fourth power: exp's, but never 0
+        const float left = 1 / (1 + 0.25f * way.extinction * std::sqrt(d2));   // to the 4th power: like exp
         const float strength = n[7][i] / height * (left * left) * (left * left);
         weights[i] = dark ? 0.f : strength;
     }

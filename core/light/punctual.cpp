@@ -1,4 +1,4 @@
-// punctual.cpp -- point, spot and directional lights as KHR_lights_punctual defines them.
+// punctual.cpp -- point, spot and directional lights, as defined by KHR_lights_punctual.
 #include "light/emitter.h"
 #include "light/emitter_check.h"
 #include "math/warp.h"
@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Toward a point, with 1 / d^2; empty at the point itself.
+/// Sample toward a point, with 1 / d^2; empty at the point itself.
 std::optional<EmitterSample> toward(Vec3f light, Rgb intensity, float range,
                                     Vec3f position) {
     const Vec3f to = light - position;
@@ -20,7 +20,7 @@ std::optional<EmitterSample> toward(Vec3f light, Rgb intensity, float range,
     return EmitterSample{to * (1 / d), d, intensity * (window / d2), 1, true};
 }
 
-/// Without cancellation where the angle is small.
+/// 1 - cos without cancellation at small angles.
 float one_minus_cos_half(float angle) {
     const float s = std::sin(angle / 4);
     return 2 * s * s;

@@ -1,19 +1,18 @@
-// triangle_sampler.h -- a triangle light as the loop wants it: edges and area are found
-// once, not at every sample.
+// triangle_sampler.h -- a triangle light with precomputed edges and area.
 #pragma once
 #include "light/emitter.h"
 #include "math/warp.h"
 
 namespace dg {
 
-struct alignas(64) TriangleSampler {   // a line of the cache: of many lamps each is a miss
+struct alignas(64) TriangleSampler {   // a cache line: with many lamps, each access is a miss
     Vec3f a, to_b, to_c;  // m
     Rgb luminance;        // cd/m2, mean
     float area = 0;       // m2; 0: not a triangle
-    float error = 0;      // m, across its plane: what rounding makes of the corners in a ray tracer
-    std::uint32_t light = 0;   // number among all lights, for a list of some
+    float error = 0;      // m: error bound perpendicular to its plane, from rounding of the corners in the ray tracer
+    std::uint32_t light = 0;   // index among all lights
     bool two_sided = false, even = false, mirrored = false;
-    bool moves = false;  // and has no place of its own: area 0
+    bool moves = false;  // moving triangles have area 0
 
     TriangleSampler() = default;
     explicit TriangleSampler(const TriangleLight& t)
@@ -27,10 +26,10 @@ struct alignas(64) TriangleSampler {   // a line of the cache: of many lamps eac
         area = 0.5f * length(normal());
         error = lamp_error(std::max({largest_coordinate(t.a), largest_coordinate(t.b), largest_coordinate(t.c)}));
     }
-    /// Along the front side; twice the area long.
+    /// Normal of the front side with a length of twice the area.
     Vec3f normal() const { return mirrored ? -cross(to_b, to_c) : cross(to_b, to_c); }
 
-    /// Uniform over the area. False where the point shows its dark side.
+    /// Uniform over the area. False if the position sees the dark side.
     bool sample(Vec2f u, Vec3f position, EmitterSample& out) const {
         const Vec2f b = warp_triangle(u);
         const Vec3f to = a + to_b * b.x + to_c * b.y - position;
@@ -45,13 +44,12 @@ struct alignas(64) TriangleSampler {   // a line of the cache: of many lamps eac
         out = {wi, d, luminance, pdf, false, b, along_ray(2 * area * d / std::abs(facing))};
         return true;
     }
-    /// Error along a ray that meets the plane under a cosine, by its inverse. No ray runs in the triangle for longer than
-    /// its longest side.
+    /// Error bound along a ray, from the inverse cosine at the plane, and at most the longest side.
     float along_ray(float inverse_cos) const {
         const float along = error * inverse_cos;
         return along < 1e-3f ? along : std::min(along, length(to_b) + length(to_c));
     }
-    /// Density per solid angle, for a point met at `t` metres.
+    /// Density, 1/sr, for a point at the distance `t` m.
     float pdf(float t, float cos_light) const {
         const float projected = std::abs(cos_light) * area;
         return projected > 0 ? t * t / projected : 0;

@@ -1,4 +1,4 @@
-// view_cone.h -- what a lens can see, as far as emitters need to know it.
+// view_cone.h -- conservative bounds of a lens's field of view, for choosing emitters.
 #pragma once
 #include <cmath>
 
@@ -6,7 +6,7 @@
 
 namespace dg {
 
-/// Where a lens is at one moment: all of its rays pass within `radius` of the eye.
+/// Position of a lens at a time: all of its rays pass within `radius` of the eye.
 struct Viewpoint {
     Vec3f eye;          // m
     float radius = 0;   // m
@@ -19,7 +19,7 @@ struct ViewCone {
     Vec3f axis{0, 0, -1};     // unit
     float half_angle = kPi;   // rad
 
-    /// Whether a ray of the lens may meet the ball. Never false where one does.
+    /// Whether a ray of the lens may hit the ball. Never false where one does.
     bool sees(Vec3f center, float radius) const {
         const Vec3f to = center - from.eye;
         const float d = length(to), reach = radius + from.radius;
