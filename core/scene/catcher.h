@@ -1,15 +1,15 @@
-// catcher.h -- parts of the scene that stand for what the photograph shows already: the set. They catch what objects
-// take from its light and add to it.
+// catcher.h -- shadow catchers: parts of the scene that model the set visible in a photograph, and receive the changes
+// of light that objects cause.
 #pragma once
 #include <cstdint>
 
 namespace dg {
 
-/// Effects of objects on one catcher. None of them: it only hides what lies behind it.
+/// Effects of objects on a catcher. Without effects it only occludes.
 struct CatcherEffects {
-    bool shadow = true;       // light of emitters, straight: what objects block
-    bool reflection = true;   // what its glossy lobes see of objects
-    bool gi = true;           // what its diffuse lobes get from objects, and lose by them
+    bool shadow = true;       // direct light that objects block
+    bool reflection = true;   // light of objects in its glossy lobes
+    bool gi = true;           // indirect light in its diffuse lobes that objects add or block
     bool all() const { return shadow && reflection && gi; }
 };
 

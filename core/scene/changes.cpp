@@ -5,7 +5,7 @@
 namespace dg {
 namespace {
 
-/// Cut keys of T, handed one by one to what(index, keys).
+/// Calls a function with the index and the clipped keys of each animated T.
 template <typename T, typename What>
 void cut(std::map<std::uint32_t, Keyed<T, double>>& all, const TimeInterval& interval, What what) {
     for (const auto& [i, keys] : all) what(i, over(keys, interval.open, interval.close));

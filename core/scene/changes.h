@@ -1,5 +1,5 @@
-// changes.h -- what changes of a scene while the shutter is open, cut to the interval that is exposed:
-// the wall between seconds and fractions of it.
+// changes.h -- animated materials and lights of a scene, clipped to the exposed interval and converted from seconds to
+// fractions of it.
 #pragma once
 #include <map>
 #include <memory>
@@ -12,11 +12,12 @@ namespace dg {
 
 struct SceneDescription;
 
-/// By material, null where it stays as it is; empty: they all do.
+/// Animation of each material, null for static materials; empty if all are static.
 using MaterialChanges = std::vector<std::unique_ptr<MaterialChange>>;
 
-/// Changes over time; those cut to a single key become plain again. In the description materials, lights and
-/// environment are left as they are when the shutter opens, the environment with its poses; the keys are gone.
+/// Extracts animation from the description. Keys clipped to a single key become static. In the description, materials,
+/// lights and environment get their values at the opening of the shutter, the environment with its poses; keys are
+/// removed.
 struct Changes {
     MaterialChanges materials;
     std::map<std::uint32_t, Keyed<Light>> lights;

@@ -5,14 +5,14 @@
 namespace dg {
 namespace {
 
-// Embree finds a place on a curve to so many parts of the radius, and of the length of a segment (its
-// error grows with the largest coordinate at work, seen from the ray). Found by the test of rays that
-// leave curves, which begins to fail at 0.3 of this.
+// Error of Embree's hits on a curve, relative to the radius and to the length of a segment (it grows with the largest
+// coordinate relative to the ray). Measured by the test of rays that leave curves, which fails below 0.3 of these
+// values.
 constexpr double kOfRadius = 2e-4, kOfLength = 8e-6;
-// Straight segments are met in double.
+// Straight segments are intersected in double.
 constexpr double kOfStraightRadius = 1e-6;
 
-/// How much the transform enlarges, along its axes.
+/// Scale of the transform along its axes.
 double growth(const Affine3d& m) { return std::max({length(m.x), length(m.y), length(m.z)}); }
 
 double length_of(const CurveSegment& s) {
@@ -43,7 +43,7 @@ std::array<float, 4> plus(std::array<float, 4> a, const std::array<float, 4>& b,
     return a;
 }
 
-/// One value per curve, or one per position.
+/// Attribute with one value per curve or one per position.
 template <typename T>
 T value_at(const SharedArray<T>& values, const Curves& c, std::uint32_t segment, double u) {
     if (values.size() == c.ends.size()) return values[c.curve_of(segment)];
@@ -99,10 +99,10 @@ float curve_curvature(const InstanceRecord& r, const Placement& place, std::uint
     const std::uint32_t first = c.starts[segment];
     const double radius = 0.5 * (double(c.radii[first]) + double(c.radii[first + c.points_per_segment()]));
     const double world = radius * growth(place.world_from_local);
-    return world > 0 ? float(0.5 / world) : 0;  // a tube bends one way alone
+    return world > 0 ? float(0.5 / world) : 0;  // a tube is curved in one direction only
 }
 
-/// The place on the segment is found again from the texture coordinates, which hold it.
+/// Recovers the position on the segment from the texture coordinates.
 TexturedPatch curve_patch(const InstanceRecord& r, const Placement& place, std::uint32_t segment,
                           const SurfaceHit& hit) {
     const Curves& c = r.curves->curves;

@@ -1,12 +1,11 @@
-// curve_surface.h -- from segment and place on a round curve to position, normals, frame, attributes.
-// The texture coordinates that curves have of their own run along the whole curve and around it, each
-// from 0 to 1: they are set 1, and set 0 where the mesh brings none.
+// curve_surface.h -- position, normals, frame and attributes at a hit on a round curve. Curves have default texture
+// coordinates from 0 to 1 along the curve and around it: these are set 1, and also set 0 if the mesh has none.
 #pragma once
 #include "scene/instance_record.h"
 
 namespace dg {
 
-/// Does for a curve what surface_at() does for a triangle, at hit.time.
+/// The counterpart of surface_at() for curves, at hit.time.
 void curve_surface_at(const InstanceRecord& record, const Placement& placement,
                       std::uint32_t segment, CurvePlace place, SurfaceHit& hit);
 
@@ -22,10 +21,10 @@ Vec3d curve_point_at(const InstanceRecord& record, std::uint32_t segment, CurveP
 float curve_curvature(const InstanceRecord& record, const Placement& placement,
                       std::uint32_t segment);
 
-/// A piece of surface as two edges (m, world) and what the texture coordinates grow by along them.
+/// A patch of the surface: two edges (m, world) and the differences of texture coordinates along them.
 struct TexturedPatch {
     Vec3f edge[2];
-    std::array<std::array<Vec2f, 2>, 2> uv;  // by set, then by edge
+    std::array<std::array<Vec2f, 2>, 2> uv;  // per set and edge
 };
 TexturedPatch curve_patch(const InstanceRecord& record, const Placement& placement,
                           std::uint32_t segment, const SurfaceHit& hit);

@@ -1,5 +1,5 @@
-// curve_surface_test.cpp -- curves in a scene: rays that leave them, texture coordinates, colours,
-// footprints, frames, bounds.
+// curve_surface_test.cpp -- curves in a scene: rays that leave them, texture coordinates, colours, footprints, frames,
+// bounds.
 #include <doctest/doctest.h>
 
 #include "geometry/curves.h"
@@ -32,7 +32,7 @@ Mesh curves_mesh(bool cubic, const Points& points, std::vector<std::uint32_t> en
     return mesh;
 }
 
-/// From (0, 0, 0) to (1, 0, 0) in `segments`; a parabola that bows toward +y. Cubic segments are exact.
+/// A parabola from (0, 0, 0) to (1, 0, 0) that is curved toward +y; exact with cubic segments.
 Points bow(int segments, bool cubic, float radius, float taper, float bend) {
     Points points;
     const auto add = [&](double x, double y) {
@@ -55,8 +55,8 @@ struct Failures {
     int inward = 0, outward = 0, met = 0;
 };
 
-/// Rays that leave a curve, see self_intersection_test.cpp. A straight curve is convex; on a bent one only what is met sooner
-/// than it can be is an error.
+/// Rays that leave a curve, as in self_intersection_test.cpp. A straight curve is convex; on a bent curve only hits
+/// that are too close count as errors.
 Failures count_failures(const Mesh& mesh, const Affine3f& placed, bool moving, float shrink, int rays) {
     SceneDescription d = describe(mesh, GltfMaterial{});
     d.instances[0].world_from_local = placed;
@@ -87,7 +87,7 @@ Failures count_failures(const Mesh& mesh, const Affine3f& placed, bool moving, f
         Vec3f wi = test_direction(3 * i + 2);
         if (i % 4 == 0) wi = normalize(wi - surface.ng * (0.99f * dot(wi, surface.ng)));  // grazing
         const float cosine = dot(wi, surface.ng);
-        // A ray that goes in at so flat an angle comes out before Embree's search can tell the two apart.
+        // A ray that enters at so flat an angle leaves before Embree can separate both hits.
         if (std::abs(cosine) < (cosine < 0 ? 0.03f : 3e-3f)) continue;
         const auto next = scene->intersect(spawn_ray(surface, wi, time));
         const double near = 0.05 * std::abs(double(cosine)) * r * length(now.x);
@@ -149,7 +149,7 @@ Failures sum_of_failures(float shrink, int rays, bool show) {
 
 TEST_CASE("no ray meets the curve that it leaves, at any scale and place") {
     const Failures f = sum_of_failures(1, 4000, true);
-    CHECK(f.inward < 1e-5 * f.met);  // Embree's search misses so few ways out
+    CHECK(f.inward < 1e-5 * f.met);  // Embree misses only few exits
 }
 
 TEST_CASE("the test of curves sees an error bound that is too small") {
@@ -185,7 +185,7 @@ TEST_CASE("texture coordinates run along the whole curve and around it; colours 
             CHECK(s.uv[0].y == doctest::Approx(7));
             CHECK(length(s.ns - out) < 1e-4f);
             CHECK(std::abs(s.tangent.x) == doctest::Approx(1).epsilon(1e-4));
-            // A quarter turn on is a quarter of the way around.
+            // A rotation by a quarter turn changes v by a quarter.
             const Vec3f next{0, -out.z, out.y};
             const auto other = scene->intersect(test_ray(on + next * 2, -next));
             REQUIRE(other.has_value());

@@ -10,13 +10,13 @@
 namespace dg {
 namespace {
 
-// Between two keys a motion turns by half a turn at most.
+// Largest rotation between two keys, in half turns.
 constexpr int kStepsPerKey = 8, kStepsPerTurn = 16;
-// Meshes with more steps are bounded as a whole: every triangle of one may be wherever the mesh ever is.
+// Meshes with more steps are bounded as a whole: each triangle gets the bounds of the mesh over all times.
 constexpr std::size_t kMostSteps = 512;
 
-/// Places of the instance, between which it turns by less than a right angle. Of a jump both sides.
-/// Those of the whole way all the same where that would be too many, and `complete` is false.
+/// Poses of the instance, with rotations of less than a right angle between them, and both poses at a jump. If too many
+/// would be needed, samples the whole interval and sets `complete` to false.
 struct Places {
     std::vector<Placement> list;
     bool complete = true;
@@ -57,7 +57,7 @@ void hold(LightBounds& bounds, Vec3d low, Vec3d high) {
     }
 }
 
-/// Bounds of everything that the mesh reaches, in whatever shape; its intensity is still to be set.
+/// Bounds of the mesh over all times and shapes, without an intensity.
 LightBounds bounds_of_way(const InstanceRecord& record, const Mesh& mesh) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     LightBounds all;
@@ -81,7 +81,7 @@ bool place(const InstanceRecord& record, TriangleLight& light, float time) {
     if (!record.changes()) return true;
     const Placement now = record.where(time);
     put(record, now, light);
-    return now.world_from_local.determinant() != 0;  // or no ray would meet it
+    return now.world_from_local.determinant() != 0;  // a singular instance cannot be hit
 }
 
 void bound_moving_triangles(const InstanceRecord& record, const Mesh& mesh,

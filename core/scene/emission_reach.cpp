@@ -1,13 +1,13 @@
-// emission_reach.cpp -- where light may go in a scene, and where it is worth sending more of it.
+// emission_reach.cpp -- bounds of lit surfaces, and specular objects to aim light paths at.
 #include "material/material_needs.h"
 #include "scene/scene.h"
 
 namespace dg {
 namespace {
 
-// Number of things that bend or mirror light which are aimed at one by one; of more, the largest.
+// Limit of specular objects that are aimed at; the largest are kept.
 constexpr std::size_t kMostAims = 16;
-// Larger things than this share of the scene are met anyway.
+// Relative size above which objects are hit often without aiming.
 constexpr float kLargeAim = 0.5f;
 
 Sphere ball_around(Vec3f min, Vec3f max) {
@@ -23,7 +23,7 @@ void widen(Vec3f& min, Vec3f& max, Vec3f a, Vec3f b) {
 
 }  // namespace
 
-/// Bounds of one instance, at all times.
+/// Bounds of an instance over all times.
 Scene::Bounds Scene::bounds_of(std::uint32_t i) const {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const Instance& instance = description_.instances[i];

@@ -1,4 +1,4 @@
-// emission.cpp -- emissive meshes become triangle lights.
+// emissive_mesh.cpp -- converts emissive meshes to triangle lights.
 #include "scene/emissive_mesh.h"
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 namespace dg {
 namespace {
 
-// Points per edge of the lattice that measures a textured triangle.
+// Largest number of points per edge of the lattice that measures a textured triangle.
 constexpr int kLargestLattice = 32;
-// A textured triangle that the lattice could not resolve keeps this share of the largest
-// possible emission, so that no lit texel is out of reach of light sampling.
+// Lower bound of the emission of textured triangles that the lattice does not resolve, relative to the largest possible
+// emission, so that light sampling reaches every lit texel.
 constexpr float kUnseenShare = 1e-3f;
 
-/// Steps along an edge that make neighbouring lattice points at most one texel apart.
+/// Number of steps along an edge with a spacing of at most one texel.
 int texel_steps(const InstanceRecord& r, const TextureSlot& slot,
                 const std::vector<Texture>& textures, std::uint32_t primitive) {
     const Texture& texture = textures[slot.index];
@@ -32,16 +32,16 @@ int texel_steps(const InstanceRecord& r, const TextureSlot& slot,
 }
 
 struct Measured {
-    Rgb mean{0, 0, 0};  // of the brighter side
+    Rgb mean{0, 0, 0};  // mean of the brighter side
     bool front = false, back = false;
-    bool even = false;  // the mean is what a ray finds, wherever light sampling looks
+    bool even = false;  // emission equals the mean at every point
 };
 
 bool has_emission_texture(const Material& material) {
     return std::ranges::any_of(emission_textures(material), &TextureSlot::used);
 }
 
-/// Opacity is the same at every point.
+/// Whether opacity is constant.
 bool same_opacity(const InstanceRecord& record, const Material& material, const std::vector<Texture>& textures) {
     if (!has_cutout(material, textures)) return true;
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
@@ -50,7 +50,7 @@ bool same_opacity(const InstanceRecord& record, const Material& material, const 
            (!m->base_color_texture.used() && !record.colors);
 }
 
-/// Neither emission nor opacity change from point to point or with direction.
+/// Whether emission and opacity are independent of point and direction.
 bool same_everywhere(const InstanceRecord& record, const Material& material, const std::vector<Texture>& textures) {
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
     if (m && m->unlit && record.colors) return false;
@@ -58,7 +58,7 @@ bool same_everywhere(const InstanceRecord& record, const Material& material, con
            same_opacity(record, material, textures);
 }
 
-/// Points per edge that show every texel, or 2.
+/// Number of points per edge that resolves every texel, at least 2.
 int wanted_steps(const InstanceRecord& record, const Material& material, const std::vector<Texture>& textures,
                  std::uint32_t primitive) {
     if (!has_emission_texture(material)) return 2;

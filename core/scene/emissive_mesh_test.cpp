@@ -1,5 +1,4 @@
-// emission_test.cpp -- emissive meshes as lights: energy, sides, textures, agreement of
-// densities.
+// emissive_mesh_test.cpp -- emissive meshes as lights: energy, sides, textures, densities.
 #include "scene/emissive_mesh.h"
 
 #include <doctest/doctest.h>
@@ -10,7 +9,7 @@ using namespace dg;
 
 namespace {
 
-/// The quad facing down at height 1, shining.
+/// An emissive quad that faces down at height 1.
 SceneDescription lamp(Rgb emissive) {
     GltfMaterial m;
     m.emissive = emissive;
@@ -23,8 +22,8 @@ Wavelengths test_wavelengths() {
     return Wavelengths::sample(0.4f);
 }
 
-/// Irradiance at a facet at `position` in units of emission((1,1,1)): by light sampling
-/// and by directions over the whole sphere. They share nothing but the scene.
+/// Irradiance at a facet at `position` in units of emission((1,1,1)), by light sampling and by uniform directions,
+/// which are independent estimates.
 struct Pair {
     double lights, directions;
 };
@@ -88,7 +87,7 @@ TEST_CASE("textured emission: both ways of looking see the same energy") {
     std::vector<std::uint8_t> pixels(64 * 64 * 3, 0);
     for (int i = 0; i < 64; ++i) {
         for (int j = 0; j < 24;
-             ++j) {  // the left 3/8 of the picture shine, more to the top
+             ++j) {  // the left 3/8 of the picture emit, with more light at the top
             for (int k = 0; k < 3; ++k)
                 pixels[(i * 64 + j) * 3 + k] = std::uint8_t(255 - 3 * i);
         }
@@ -100,7 +99,7 @@ TEST_CASE("textured emission: both ways of looking see the same energy") {
     CHECK(e.lights > 0.1);
     CHECK(e.lights == doctest::Approx(e.directions).epsilon(0.02));
 
-    // The means that steer the choice add up to the energy of the picture.
+    // The means for choosing lights add up to the energy of the picture.
     double mean = 0;
     for (const Light& l : scene->lights().lights())
         mean += std::get<TriangleLight>(l).mean_luminance.x / 2;
@@ -217,7 +216,7 @@ TEST_CASE("an even light needs no second look; a texture or a veil does") {
     GltfMaterial m;
     m.emissive = {1, 2, 3};
     CHECK_FALSE(uneven(m, false));
-    CHECK_FALSE(uneven(m, true));  // opaque: alpha is not looked at
+    CHECK_FALSE(uneven(m, true));  // opaque: alpha is ignored
     m.alpha_mode = GltfMaterial::AlphaMode::blend;
     m.base_alpha = 0.5f;
     CHECK_FALSE(uneven(m, false));

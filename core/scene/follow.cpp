@@ -1,4 +1,4 @@
-// follow.cpp -- points of surfaces through time, for ground truth.
+// follow.cpp -- follows surface points over time, for ground truth.
 #include "scene/scene.h"
 
 namespace dg {

@@ -1,4 +1,4 @@
-// footprint.cpp -- a circle across the ray, laid on the surface and taken to uv.
+// footprint.cpp -- projects the circular cross section of a ray cone to the surface and to uv.
 #include "scene/footprint.h"
 
 #include "scene/curve_surface.h"
@@ -6,7 +6,7 @@
 namespace dg {
 namespace {
 
-// A cone cannot be longer on the surface than this many times its width.
+// Limit of a footprint's length on the surface, relative to the width of the cone.
 constexpr float kSmallestCosine = 1e-3f;
 
 Vec3f world_edge(const InstanceRecord& r, const Placement& place, std::uint32_t from,
@@ -27,10 +27,9 @@ TexturedPatch triangle_patch(const InstanceRecord& r, const Placement& place, st
 
 }  // namespace
 
-// The cone meets the plane in an ellipse: as wide as the cone across the plane of incidence,
-// 1 / cos longer along it. Each axis is resolved into the edges, whose uv are
-// known. Source: Akenine-Moller et al. 2021, Improved Shader and Texture Level of Detail
-// Using Ray Cones, JCGT 10(1).
+// The cone intersects the plane in an ellipse: it has the width of the cone perpendicular to the plane of incidence,
+// and is longer by 1 / cos along it. Each axis is expressed in the edges, which have known uv differences. Source:
+// Akenine-Moller et al. 2021, Improved Shader and Texture Level of Detail Using Ray Cones, JCGT 10(1).
 void set_footprint(const InstanceRecord& r, const Placement& place, float width,
                    SurfaceHit& hit) {
     if (r.curves ? !r.textured : !r.uv[0] && !r.uv[1]) return;

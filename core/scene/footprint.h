@@ -1,16 +1,15 @@
-// footprint.h -- what a ray's cone covers of a triangle.
+// footprint.h -- texture footprint of a ray cone on a triangle.
 #pragma once
 #include "scene/instance_record.h"
 
 namespace dg {
 
-/// Sets hit.footprint from the width (m) of the cone across the ray at the hit; needs ng, wo.
-/// Nothing happens where the instance has no texture coordinates that are looked at.
+/// Sets hit.footprint from the width (m) of the cone at the hit; reads ng and wo. No effect if the material does not
+/// use the instance's texture coordinates.
 void set_footprint(const InstanceRecord& record, const Placement& placement, float width,
                    SurfaceHit& hit);
 
-/// Mean curvature (1/m) that the vertex normals of a triangle tell of; positive: bulges
-/// toward the front.
+/// Mean curvature (1/m) from the vertex normals of a triangle; positive if it is convex toward the front.
 float mean_curvature(const InstanceRecord& record, const Placement& placement,
                      std::uint32_t primitive);
 

@@ -1,4 +1,4 @@
-// footprint_test.cpp -- footprints on planes and the curvature of balls, in closed form.
+// footprint_test.cpp -- footprints on planes and curvatures of balls against closed forms.
 #include "scene/footprint.h"
 
 #include <doctest/doctest.h>
@@ -22,7 +22,7 @@ Affine3f scaled(float x, float y, float z) {
 }  // namespace
 
 TEST_CASE("the footprint on a plane: the cone's width across, 1 / cos of it along the way") {
-    // A quad of 6 m x 2 m carries uv from 0 to 1: 1/6 and 1/2 of uv per metre.
+    // A quad of 6 m x 2 m has uv from 0 to 1: 1/6 and 1/2 of uv per metre.
     const auto scene = textured(quad_mesh(), scaled(3, 1, 1));
     const float slant = 0.6f;  // sine
     Ray ray = test_ray({0.3f - slant * 5, 0.2f, 0.8f * 5}, {slant, 0, -0.8f});

@@ -1,5 +1,4 @@
-// instance_record.cpp -- from triangle and barycentrics to position, normals, frame,
-// attributes.
+// instance_record.cpp -- position, normals, frame and attributes from triangle and barycentrics.
 #include "scene/instance_record.h"
 
 #include "material/material_needs.h"
@@ -8,10 +7,9 @@
 namespace dg {
 namespace {
 
-// Positions are interpolated and transformed in double, so what is left of the error is
-// the rounding of the vertices (flattened) or of the ray (instanced) inside the ray
-// tracer: a few units in the last place of the largest coordinate at work. Found by the
-// test of closed meshes, which begins to fail at 0.3 of this.
+// Positions are interpolated and transformed in double, so the error is the rounding of vertices (flattened) or of the
+// ray (instanced) in the ray tracer: a few units in the last place of the largest coordinate. Measured by the test of
+// closed meshes, which fails below 0.3 of this.
 constexpr float kUlps = 8 * 0x1p-24f;
 
 struct Corners {
@@ -23,7 +21,7 @@ Corners corners_of(const InstanceRecord& r, std::uint32_t primitive) {
     return {t[0], t[1], t[2]};
 }
 
-/// Largest row sum of |entries|: how much a linear map can enlarge a coordinate.
+/// Largest row sum of |entries|: bound of the factor by which a linear map scales a coordinate.
 double row_norm(Vec3d x, Vec3d y, Vec3d z) {
     double norm = 0;
     for (int i = 0; i < 3; ++i) {
@@ -34,11 +32,11 @@ double row_norm(Vec3d x, Vec3d y, Vec3d z) {
 
 Vec3f unit_or(Vec3f v, Vec3f fallback) {
     const float l2 = length_squared(v);
-    return l2 > 1e-30f ? v * (1 / std::sqrt(l2)) : fallback;  // false for NaN too
+    return l2 > 1e-30f ? v * (1 / std::sqrt(l2)) : fallback;  // false for NaN, too
 }
 
-/// Direction of +u over the triangle, with the side of -v for the handedness (glTF: v
-/// runs downward in the picture, green points upward). Empty where uv is degenerate.
+/// Direction of +u on the triangle, with the handedness of -v (in glTF v points down and green points up). Empty for
+/// degenerate uv.
 struct UvFrame {
     Vec3f along_u, along_minus_v;
     bool good;
@@ -51,7 +49,7 @@ UvFrame uv_frame(const InstanceRecord& r, const Placement& place, Corners t) {
     const Vec3f a = to_float(r.position(place, t.a));
     const Vec3f e1 = to_float(r.position(place, t.b)) - a,
                 e2 = to_float(r.position(place, t.c)) - a;
-    const float sign = std::copysign(1.f, det);  // lengths do not matter
+    const float sign = std::copysign(1.f, det);  // without scale
     const Vec3f du = (e1 * uv_c.y - e2 * uv_b.y) * sign;
     const Vec3f dv = (e2 * uv_b.x - e1 * uv_c.x) * sign;
     auto world = [&](Vec3f v) {
@@ -70,7 +68,7 @@ void set_tangent(const InstanceRecord& r, const Placement& place, Corners t, flo
         const Vec3d local{a[0] * w + b[0] * u + c[0] * v, a[1] * w + b[1] * u + c[1] * v,
                           a[2] * w + b[2] * u + c[2] * v};
         tangent = to_float(place.world_from_local.vector(local));
-        // Mirroring turns the cross product of normal and tangent around.
+        // Mirroring flips the cross product of normal and tangent.
         hit.tangent_sign = (a[3] < 0) != place.mirrored ? -1.f : 1.f;
     } else if (r.tangent_uv) {
         const UvFrame frame = uv_frame(r, place, t);
@@ -89,12 +87,11 @@ Placement place(const Affine3d& m, bool flattened) {
     Placement p{};
     p.world_from_local = m;
     p.mirrored = m.determinant() < 0;
-    const double side = p.mirrored ? -1 : 1;  // cofactors, as Affine::normal
+    const double side = p.mirrored ? -1 : 1;  // cofactors, as in Affine::normal
     p.normal_matrix = {
         cross(m.y, m.z) * side, cross(m.z, m.x) * side, cross(m.x, m.y) * side, {}};
 
-    // A ray that is taken into the mesh's space suffers the rounding of that transform
-    // too.
+    // Adds the rounding of the ray's transform to the mesh's space.
     const Affine3d inv = inverse(m);
     const double there = row_norm(m.x, m.y, m.z), back = row_norm(inv.x, inv.y, inv.z);
     const double growth = flattened ? 1 : 1 + there * back;

@@ -44,7 +44,7 @@ void Scene::find_media() {
     }
 }
 
-/// In front of the first surface that bounds a medium, or behind it, the ray is in what that says.
+/// The first surface along the ray that bounds a medium determines the medium at the origin.
 Interior Scene::medium_around(Ray ray) const {
     Interior around;
     around.medium = fog_;
@@ -63,7 +63,7 @@ Interior Scene::medium_around(Ray ray) const {
     return around;
 }
 
-/// Does as intersect() of the tracer, as if surfaces where nothing but media changes were not there.
+/// Intersects the scene without surfaces that only separate media.
 std::optional<RawHit> Scene::first_visible(Ray ray) const {
     for (;;) {
         const auto raw = intersector_->intersect(ray);
@@ -83,7 +83,7 @@ Interior Scene::medium_on(std::uint32_t instance, bool inside) const {
     return there;
 }
 
-/// A medium takes the place of what a material absorbs.
+/// A participating medium replaces the absorption of a material.
 Interior Scene::medium_behind(const Interior& here, std::uint32_t instance, const Interior& inside, bool bounds_volume,
                               bool entering) const {
     const bool bounds = media_[instance].bounds;

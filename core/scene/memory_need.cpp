@@ -8,7 +8,7 @@
 namespace dg {
 namespace {
 
-/// Emits at some time.
+/// Whether a material emits at some time.
 bool ever_emits(const SceneDescription& d, std::uint32_t material) {
     const auto found = d.material_keys.find(material);
     if (found == d.material_keys.end()) return emits(d.materials[material]);

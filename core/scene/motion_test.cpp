@@ -1,5 +1,4 @@
-// motion_test.cpp -- moving instances: what a ray meets is what it would meet in the still scene of
-// its time.
+// motion_test.cpp -- moving instances: rays have the same hits as in a static scene of their time.
 #include <doctest/doctest.h>
 
 #include "scene/scene.h"
@@ -20,7 +19,7 @@ Motion between(const Affine3d& a, const Affine3d& b, Interpolation how = Interpo
     return Motion::keys(times, keys, how);
 }
 
-/// Mirrored and sheared: no rotation describes it.
+/// A mirrored and sheared transform.
 Affine3d crooked() {
     Affine3d m = turned({1, 2, 3}, 70, 0.8, {0.5, -0.2, 0.3});
     m.x = m.x * -1.3 + m.y * 0.4;
@@ -55,7 +54,7 @@ SceneDescription still_ball(const Motion& motion, double seconds) {
     return d;
 }
 
-/// From outside the ball of radius 2 to near its centre, at a time.
+/// Ray at a time from outside the ball of radius 2 toward its center.
 Ray ray_to(const Affine3d& m, int i, float time) {
     const Vec3d from = m.point(to_double(test_direction(3 * i)) * 2.5);
     const Vec3d to = m.point(to_double(test_direction(3 * i + 1)) * 0.97);
@@ -106,7 +105,7 @@ TEST_CASE("a moving instance is met where it stands at the time of the ray") {
 
 namespace {
 
-/// A ball that bulges and leans, at equal steps; normals as they may be.
+/// A ball that bulges and leans, at equal time steps, with arbitrary normals.
 SceneDescription deforming_ball(std::uint32_t steps) {
     SceneDescription d = describe(ball_mesh(3), GltfMaterial{});
     Mesh& mesh = d.meshes[0];
@@ -125,7 +124,7 @@ SceneDescription deforming_ball(std::uint32_t steps) {
     return d;
 }
 
-/// The still mesh of one time, with what lies between steps written out.
+/// The static mesh at a time, interpolated between steps.
 SceneDescription frozen(const SceneDescription& moving, float time) {
     SceneDescription d = moving;
     Mesh& mesh = d.meshes[0];
@@ -154,7 +153,7 @@ SceneDescription frozen(const SceneDescription& moving, float time) {
 TEST_CASE("a mesh that deforms is met in its shape at the time of the ray") {
     const Motion flight = between({}, turned({0, 1, 0.2}, 100, 1.2, {1, 1, -2}));
     for (const std::uint32_t steps : {2u, 3u, 9u, kMostMeshSteps}) {
-        for (const int kind : {0, 1, 2}) {  // flattened, instanced, moving as well
+        for (const int kind : {0, 1, 2}) {  // flattened, instanced, moving
             SceneDescription d = deforming_ball(steps);
             d.instances[0].world_from_local = to_float(turned({1, 0, 0}, 40, 2, {0, 1, 0}));
             if (kind == 1) add_crowd(d);
@@ -224,7 +223,7 @@ TEST_CASE("an instance is met only while it is shown") {
     CHECK_FALSE(Scene::build(d)->intersect(test_ray({0.1f, 0.2f, 2}, {0, 0, -1})));
     d.interval = {3, 3};
     CHECK(Scene::build(d)->intersect(test_ray({0.1f, 0.2f, 2}, {0, 0, -1})));
-    d.instances[0].shown = std::make_shared<const Shown>(Shown{{{3, 3}}});  // a moment
+    d.instances[0].shown = std::make_shared<const Shown>(Shown{{{3, 3}}});  // shown for an instant
     CHECK(Scene::build(d)->intersect(test_ray({0.1f, 0.2f, 2}, {0, 0, -1})));
 }
 

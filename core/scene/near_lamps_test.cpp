@@ -1,5 +1,5 @@
-// near_lamps_test.cpp -- lamps close to the surfaces that they light: nothing stands between, so light sampling finds
-// all of their light; and what stands between, however close to the lamp, hides it.
+// near_lamps_test.cpp -- lamps close to the surfaces that they light: unoccluded lamps are visible to all shadow rays,
+// and occluders very close to the lamp block them.
 #include <doctest/doctest.h>
 
 #include "scene/scene.h"
@@ -9,7 +9,7 @@ using namespace dg;
 
 namespace {
 
-/// Scale and place of a scene, which rounding goes by.
+/// Scale and position of a scene, which determine rounding errors.
 struct Place {
     float scale;
     Vec3f origin;
@@ -25,7 +25,7 @@ Material glowing() {
     return {"glowing", m};
 }
 
-/// A floor, 40 wide or as wide as asked for, under lamps.
+/// A floor under lamps.
 SceneDescription floor_of(const Place& place, float half_width) {
     SceneDescription d = describe(quad_mesh(), GltfMaterial{});
     d.instances[0].world_from_local = place.local(half_width, {});
@@ -37,7 +37,7 @@ void put(SceneDescription& d, Mesh mesh, Material material, const Affine3f& wher
     d.instances.back().world_from_local = where;
 }
 
-/// A quad that looks down.
+/// A quad that faces down.
 Mesh facing_down() {
     Mesh mesh = quad_mesh();
     mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
@@ -48,8 +48,8 @@ struct Count {
     int asked = 0, hidden = 0;
 };
 
-/// Light samples from points of the floor within `reach` of its middle. `aimed`: the shadow ray as it is used; otherwise
-/// along the direction that was sampled.
+/// Shadow rays from points of the floor within `reach` of its center. `aimed`: rays of ray_to_light(); otherwise along
+/// the sampled direction.
 Count count_hidden(const SceneDescription& d, const Place& place, float reach, bool aimed = true) {
     const auto scene = Scene::build(d);
     const Wavelengths wavelengths = Wavelengths::sample(0.5f);

@@ -35,7 +35,7 @@ void build_pyramids(std::vector<Texture>& textures, const std::vector<Material>&
                s.width == t.width && s.height == t.height && s.channels == t.channels &&
                weighed[a] == weighed[b];
     };
-    std::vector<std::size_t> first(textures.size());  // that has the same pyramid
+    std::vector<std::size_t> first(textures.size());  // first texture with the same pyramid
     for (std::size_t i = 0; i < textures.size(); ++i)
         for (first[i] = 0; first[i] < i && !same(first[i], i);) ++first[i];
     oneapi::tbb::parallel_for(std::size_t(0), textures.size(), [&](std::size_t i) {

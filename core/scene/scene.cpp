@@ -1,4 +1,4 @@
-// scene.cpp -- building a scene, and asking it for surfaces, shadows and light.
+// scene.cpp -- builds a scene, and intersects rays.
 #include "scene/scene.h"
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 namespace dg {
 namespace {
 
-/// False where every point of the mesh is opaque although the material allows otherwise,
-/// as many exporters write "blend" everywhere: rays through it need not ask.
+/// Whether a mesh needs opacity tests. False if every point is opaque in spite of the material's alpha mode, since many
+/// exporters always write "blend".
 bool may_be_transparent(const Material& material, const Mesh& mesh,
                         const std::vector<Texture>& textures) {
     if (!has_cutout(material, textures)) return false;
@@ -31,8 +31,7 @@ bool may_be_transparent(const Material& material, const Mesh& mesh,
     return opacity({material.name, plain}, textures, uv, 1) < 1;
 }
 
-/// Uniform in [0,1), the same for the same ray and triangle whatever the order of
-/// traversal. `salt` makes another of it.
+/// Uniform random number in [0,1), a function of ray, triangle and `salt`, independent of the order of traversal.
 float random_of(const Ray& ray, const RawHit& hit, std::uint32_t salt) {
     auto pair = [](float a, float b) {
         return std::uint64_t(std::bit_cast<std::uint32_t>(a)) << 32 |
@@ -45,20 +44,20 @@ float random_of(const Ray& ray, const RawHit& hit, std::uint32_t salt) {
     return static_cast<float>(h >> 40) * 0x1p-24f;
 }
 
-/// Where on a curve: a ray may meet a segment twice.
+/// Hash of the position on a curve, since a ray may hit a segment twice.
 std::uint32_t place_on_curve(const InstanceRecord& record, const RawHit& hit) {
     return record.curves ? std::bit_cast<std::uint32_t>(hit.v) << 4 : 0;
 }
 
-// Parts of mixtures are chosen by other numbers than what passes their holes.
+// The choice of a mixture's part and the opacity test use different random numbers.
 constexpr std::uint32_t kOfChoice = 0x9e3779b9u;
 
 bool within_limits(const Affine3d& m) {
     return dg::within_limits(m.x) && dg::within_limits(m.y) && dg::within_limits(m.z) && dg::within_limits(m.origin);
 }
 
-/// The wall between seconds and fractions of the interval. What has no extent all the while, as
-/// files hide things, is not there.
+/// Converts seconds to fractions of the interval. Instances with an extent of 0 at all times, which files use to hide
+/// objects, are removed.
 void place_in(Instance& instance, const TimeInterval& interval) {
     if (instance.shown) {
         const Shown shown = instance.shown->over(interval);
@@ -123,7 +122,7 @@ void Scene::build_intersector(const std::vector<InstanceGeometry>& geometry) {
         [this](const Ray& ray, const RawHit& hit) { return passes(ray, hit); });
 }
 
-/// Where no light is a delta light, shadow rays need not ask about volumes.
+/// Without delta lights, shadow rays need no tests for volumes.
 Clear Scene::clear_for_shadows(const Instance& instance, bool delta_lights) const {
     const auto bounds = description_.media.of_material.find(instance.material);
     if (bounds != description_.media.of_material.end() && bounds->second.invisible) return Clear::sheet;
@@ -180,7 +179,7 @@ void Scene::measure() {
     if (!(bounds_.min.x <= bounds_.max.x)) bounds_ = {};
 }
 
-/// Alpha: the ray passes with probability 1 - opacity.
+/// Stochastic alpha: the ray passes with probability 1 - opacity.
 bool Scene::passes(const Ray& ray, const RawHit& hit) const {
     const InstanceRecord& record = records_[hit.instance];
     SurfaceHit surface;
@@ -209,7 +208,7 @@ void Scene::find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) con
 
 std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {
     const auto raw = intersector_->intersect(ray);
-    std::optional<Hit> result(std::in_place);  // the one object that is returned: no copy
+    std::optional<Hit> result(std::in_place);  // constructed in place for return without a copy
     if (!raw) {
         result.reset();
         return result;

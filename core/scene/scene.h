@@ -25,30 +25,29 @@ namespace dg {
 struct Instance {
     std::string name;
     std::uint32_t mesh, material;
-    Affine3f world_from_local;                      // where it does not move
-    std::shared_ptr<const Motion> motion = nullptr; // of time in s; null: it stands still
-    std::shared_ptr<const Shown> shown = nullptr;   // times in s; null: always there
-    std::optional<CatcherEffects> catcher = {};     // nothing: it is an object
+    Affine3f world_from_local;                      // for static instances
+    std::shared_ptr<const Motion> motion = nullptr; // over time in s; null: static
+    std::shared_ptr<const Shown> shown = nullptr;   // visibility over time in s; null: always visible
+    std::optional<CatcherEffects> catcher = {};     // set for catchers; empty: an object
 };
 
-/// Parts that a scene is built from. Lights made of meshes are found by Scene::build from the
-/// materials.
+/// Input of Scene::build, which adds the lights of emissive meshes.
 struct SceneDescription {
     std::vector<Mesh> meshes;
     std::vector<Texture> textures;
     std::vector<Material> materials;
     std::vector<Instance> instances;
     std::vector<Light> lights;  // punctual and sphere lights
-    std::vector<std::shared_ptr<const LightProfile>> profiles;   // of lights and materials
+    std::vector<std::shared_ptr<const LightProfile>> profiles;   // for lights and materials
     SceneMedia media;
     std::optional<Environment> environment;
     LightChoice light_choice = LightChoice::tree;
-    /// Exposed interval of the picture, s: the first moment of any row of the film to the last. Inside
-    /// the scene time is the fraction of it, 0 .. 1.
+    /// Exposed interval of the picture, s, over all rows of the film. Times inside the scene are fractions of it, 0 ..
+    /// 1.
     TimeInterval interval;
-    /// Bytes that the machine has left to build it in; 0: nobody knows.
+    /// Available memory for building the scene, bytes; 0: unknown.
     std::uint64_t free_memory = 0;
-    /// Changes over time (s), by index; what is not named stays as it is above.
+    /// Animation keys over time (s), by index; materials and lights without keys are static.
     std::map<std::uint32_t, Keyed<Material, double>> material_keys;
     std::map<std::uint32_t, Keyed<Light, double>> light_keys;
     std::optional<Keyed<EnvironmentPose, double>> environment_keys;
@@ -56,111 +55,106 @@ struct SceneDescription {
 
 class Scene {
   public:
-    /// Validates (indices, NaN, singular transforms: Error names the part), finds
-    /// emissive triangles, builds the intersector and the light set. A scene without
-    /// instances is allowed.
+    /// Validates the description, collects emissive triangles, and builds the intersector and the light set. Throws
+    /// Error that names the part, for invalid indices, NaN and singular transforms. A scene without instances is
+    /// allowed.
     static std::shared_ptr<const Scene> build(SceneDescription description);
     ~Scene();
 
-    /// Nearest surface. Sphere lights come back with sphere_light >= 0 and only position,
-    /// t and wo set. The tangent follows the texture only where the material has a normal
-    /// map, and uv is read only where the material has textures.
+    /// The nearest hit. For sphere lights, sphere_light >= 0 and only position, t and wo are set. The tangent follows
+    /// the texture only if the material has a normal map, and uv is set only if the material has textures.
     struct Hit {
         SurfaceHit surface;
         std::int64_t sphere_light = -1;
-        Hit() {}  // written, so that nothing is cleared first and then set (measured)
+        Hit() {}  // user-provided, to avoid zero-initialization (measured)
     };
-    /// Nothing for a ray that is not is_traceable().
+    /// Empty for a miss, and for a ray that is not is_traceable().
     std::optional<Hit> intersect(const Ray& ray) const;
-    /// The same in two steps (follow.cpp): which point of which surface, and what it is like. The
-    /// point can be followed through time, and through scenes that differ in nothing but time.
-    /// Surfaces where nothing but media changes are passed.
+    /// intersect() in two steps (follow.cpp): the raw hit, and its surface attributes. A raw hit can be followed over
+    /// time, also in scenes that differ only in time. Passes surfaces that only separate media.
     std::optional<RawHit> first_hit(const Ray& ray) const {
         return has_bounded_media_ ? first_visible(ray) : intersector_->intersect(ray);
     }
     Hit surface(const Ray& ray, const RawHit& hit) const;
-    /// Where it is (m) at a time; nothing while it is not shown. `normal` is asked for on spheres.
+    /// Position (m) of a raw hit at a time; empty while it is hidden. `normal` is used only for spheres.
     std::optional<Vec3d> follow(const RawHit& hit, Vec3f normal, float time) const;
-    /// Directions at infinity stay where they are in the sky, which may turn.
+    /// Converts directions to and from the frame of the sky, which may rotate.
     Vec3f sky_from_world(Vec3f direction, float time) const;
     Vec3f world_from_sky(Vec3f direction, float time) const;
 
-    /// Visibility of light that comes to `ray` (origin as spawn_ray moved it) from
-    /// where it ends, not counting what lies there: 0 or 1,
-    /// and between them where it passes clear surfaces. It goes through smooth sheets,
-    /// which bend nothing, as a path does. The boundaries of volumes are passed only by the
-    /// light of delta lights, which no path could find behind them, and as if they did not
-    /// bend it: Fresnel's losses at each, and absorption along the straight way, which
-    /// begins in `medium`.
+    /// Transmittance along a shadow ray (with an origin from spawn_ray) up to its end: 0, 1, or a value between them
+    /// behind clear surfaces. Passes thin smooth sheets, as paths do. Passes the boundaries of volumes only for delta
+    /// lights, which paths cannot find, and ignores refraction: applies the Fresnel transmittance at each boundary, and
+    /// absorption along the unrefracted ray, which starts in `medium`.
     Spectrum visibility(Ray ray, bool delta, const Interior& medium, const Wavelengths& wavelengths) const;
 
-    /// Visibility of light that runs along `ray` from t_min to t_max, all of it through air and sheets. None comes along
-    /// a ray that ends before it starts (t_max < 0).
+    /// Transmittance along `ray` from t_min to t_max through air and thin sheets; 0 for t_max < 0.
     Spectrum visibility_along(const Ray& ray, const Wavelengths& wavelengths) const;
 
-    bool has_clear() const { return has_clear_; }  // some shadow rays pass surfaces
+    bool has_clear() const { return has_clear_; }  // some surfaces transmit shadow rays
 
     // Media (media.cpp).
     bool has_media() const { return has_media_; }
-    /// The medium that a ray begins in, found by what it meets: for the first ray of a path.
+    /// The medium at the origin of a ray, determined from its hits; for the first ray of a path.
     Interior medium_around(Ray ray) const;
-    /// The medium behind a surface of an instance that is met in `here`; `inside` and `bounds_volume` are its BSDF's.
+    /// The medium behind a surface of an instance that is hit inside `here`; `inside` and `bounds_volume` are from its
+    /// BSDF.
     Interior beyond(const Interior& here, std::uint32_t instance, const Interior& inside, bool bounds_volume,
                     bool entering) const {
         if (has_media_) return medium_behind(here, instance, inside, bounds_volume, entering);
         return medium_beyond(here, inside, bounds_volume, entering);
     }
-    /// Whether nothing but media changes at the surfaces of an instance.
+    /// Whether the surfaces of an instance only separate media.
     bool is_invisible(std::uint32_t instance) const { return has_bounded_media_ && media_[instance].invisible; }
-    /// Share of light that is left after the way from `begin` to `end` m along the ray.
+    /// Transmittance from `begin` to `end` m along the ray.
     Spectrum left_after(const Interior& in, const Ray& ray, float begin, float end,
                         const Wavelengths& wavelengths) const {
         const Spectrum left = in.transmittance(end - begin);
         return in.medium ? left * through_medium(in, ray, begin, end, wavelengths) : left;
     }
-    /// Density along a ray in a medium on a grid.
+    /// A ray in the space of a medium's density grid.
     GridRay grid_ray(const Interior& in, const Ray& ray) const;
 
     bool has_catchers() const { return has_catchers_; }
-    /// Effects that the instance catches; null: it is an object.
+    /// Effects of a catcher; null for objects.
     const CatcherEffects* catcher(std::uint32_t instance) const {
         const auto& effects = description_.instances[instance].catcher;
         return effects ? &*effects : nullptr;
     }
-    /// Whether a light (index in lights(), or LightSet::kEnvironment) comes with an object. Lamps without a mesh and the
-    /// environment are the set's.
+    /// Whether a light (index in lights(), or LightSet::kEnvironment) belongs to an object. Lamps without a mesh and
+    /// the environment belong to the set.
     bool is_of_object(std::int32_t light) const;
 
     /// Material at the hit's time.
     MaterialAt material(const SurfaceHit& hit) const {
         return material_at(records_[hit.instance].material, hit.time);
     }
-    /// Mean curvature (1/m) of the interpolated normals over the hit's triangle as seen from
-    /// wo: positive where the surface bulges toward it. 0 without vertex normals.
+    /// Mean curvature (1/m) from the vertex normals of the hit's triangle: positive if it is convex toward wo; 0
+    /// without vertex normals.
     float curvature(const SurfaceHit& hit) const;
     const std::vector<Texture>& textures() const { return description_.textures; }
     const LightSet& lights() const { return lights_; }
-    /// Light sampling with textured emission resolved (see LightSample::uneven).
+    /// Light sampling including textured emission (see LightSample::uneven).
     std::optional<LightSample> sample_light(float u_select, Vec2f u, Vec3f position,
                                             float time,
                                             const Wavelengths& wavelengths) const;
 
-    /// Factor of the material's profile on what the hit emits toward hit.wo.
+    /// Profile factor on the emission of a hit toward hit.wo.
     Rgb shaping(const Material& material, const SurfaceHit& hit) const {
         if (material.profile < 0) return {1, 1, 1};
         return profile_at(material.profile, hit.instance, hit.time, hit.wo);
     }
     void resolve(LightSample& sample, float time, const Wavelengths& wavelengths) const;
 
-    /// Emission (cd/m2) of a point of an emitter `toward` (unit) where it is seen from, as a ray that hits it
-    /// would find it on average; `width` (m) of its cone there, across it.
+    /// Mean emission (cd/m2) that rays find at a point of an emitter in the direction `toward` (unit). `width` (m):
+    /// width of the ray cone at the point.
     Rgb emission(const EmissionPoint& point, Vec3f toward, float time, float width = 0) const;
-    /// It depends on where on the emitter the point is, and so on the width.
+    /// Whether emission() depends on the point on the emitter, and on the width.
     bool is_uneven(const EmissionPoint& point) const;
 
-    /// Where light may go.
+    /// Bounds of lit surfaces, and targets of light paths.
     EmissionReach emission_reach() const;
-    /// A ray of EmissionRays on its way, past its own emitter; its value with textures resolved.
+    /// A ray of EmissionRays, with its origin offset from the emitter, and its value including textures.
     struct Leaving {
         Ray ray;
         Rgb value;
@@ -170,9 +164,9 @@ class Scene {
     struct Bounds {
         Vec3f min, max;
     };
-    /// Bounds of the instances at all times; all 0 without any.
+    /// Bounds of the instances over all times; 0 without instances.
     Bounds bounds() const { return bounds_; }
-    std::size_t triangle_count() const { return triangle_count_; }  // instanced
+    std::size_t triangle_count() const { return triangle_count_; }  // of all instances
     const SceneDescription& description() const { return description_; }
     const char* intersector_name() const { return intersector_->name(); }
 
@@ -212,7 +206,7 @@ class Scene {
     const MaterialChange* change_of(std::uint32_t material) const {
         return changes_.materials.empty() ? nullptr : changes_.materials[material].get();
     }
-    /// One, where it stays as it is.
+    /// The keys of a material; a single key if it is static.
     std::span<const Material> keys_of(std::uint32_t material) const {
         if (const MaterialChange* change = change_of(material)) return change->keys.values;
         return {&description_.materials[material], 1};
@@ -222,7 +216,7 @@ class Scene {
     bool has_clear_ = false, has_catchers_ = false;
     bool has_media_ = false, has_bounded_media_ = false;
     const Medium* fog_ = nullptr;
-    std::vector<MediaOfInstance> media_;   // by instance; empty: there are none
+    std::vector<MediaOfInstance> media_;   // per instance; empty: no media
 
     SceneDescription description_;
     std::unique_ptr<Intersector> intersector_;
@@ -233,14 +227,13 @@ class Scene {
     std::size_t triangle_count_ = 0;
 };
 
-/// A ray that leaves `hit` along `wi`, its origin moved off the surface to the proper
-/// side.
+/// A ray that leaves `hit` along `wi`, with its origin offset from the surface on the side of wi.
 Ray spawn_ray(const SurfaceHit& hit, Vec3f wi, float time);
 
-/// The same, aimed from there at the point that is `distance` metres from the hit along `wi`, where it ends. A lamp that
-/// is near and slant is missed along `wi` itself, or met too soon.
+/// A ray from the offset origin to the point at `distance` m from the hit along `wi`, where it ends. Without the
+/// correction for the offset, a ray may miss a near lamp at a grazing angle, or hit it too early.
 Ray ray_to(const SurfaceHit& hit, Vec3f wi, float distance, float time);
-/// To what light sampling found; it ends short of the lamp by as much as the lamp is uncertain.
+/// A shadow ray to a light sample; it ends before the lamp by the error bound of its position.
 Ray ray_to_light(const SurfaceHit& hit, const LightSample& light, float time);
 
 }  // namespace dg

@@ -1,4 +1,4 @@
-// scene_lights.cpp -- the lights of a scene: those it was given, and those that its meshes are.
+// scene_lights.cpp -- the lights of a scene: lights of the description, and emissive meshes.
 #include "scene/emission_motion.h"
 #include "scene/emissive_mesh.h"
 #include "scene/memory_need.h"
@@ -6,7 +6,7 @@
 
 namespace dg {
 
-/// The shapes of the sphere lights, in their order.
+/// Shapes of the sphere lights, in order.
 std::vector<Keyed<Sphere>> Scene::spheres() const {
     std::vector<Keyed<Sphere>> spheres;
     for (std::uint32_t i = 0; i < description_.lights.size(); ++i) {
@@ -24,7 +24,7 @@ std::vector<Keyed<Sphere>> Scene::spheres() const {
 
 void Scene::build_lights() {
     std::vector<Light> lights;
-    lights.reserve(description_.lights.size() + MemoryNeed(description_).lamps);   // a million would be moved often
+    lights.reserve(description_.lights.size() + MemoryNeed(description_).lamps);   // avoids moves
     lights = description_.lights;
     LightMotion motion{changes_.lights, {}, [this](TriangleLight& light, float time) {
                            return place(records_[light.instance], light, time);
@@ -103,7 +103,7 @@ Rgb Scene::emission(const EmissionPoint& point, Vec3f toward, float time, float 
         return lights_.environment()->luminance(point.position, time);
     const auto* triangle = std::get_if<TriangleLight>(&lights_.lights()[point.light]);
     if (!triangle) {
-        if (dot(point.normal, toward) <= 0) return {0, 0, 0};   // through the ball
+        if (dot(point.normal, toward) <= 0) return {0, 0, 0};   // blocked by the ball itself
         const SphereLight now = lights_.sphere_light_at(point.light, time);
         return now.luminance * lights_.shaped(now, toward);
     }

@@ -64,7 +64,7 @@ TEST_CASE("a scene that does not fit into memory is refused with what it needs")
     GltfMaterial glowing;
     glowing.emissive = {1, 1, 1};
     SceneDescription d = describe(quad_mesh(), glowing);
-    for (int i = 1; i < 1000; ++i) d.instances.push_back(d.instances[0]);   // of one mesh of 2 triangles
+    for (int i = 1; i < 1000; ++i) d.instances.push_back(d.instances[0]);   // all with the same mesh of 2 triangles
     d.materials.push_back({"dark", GltfMaterial{}});
     const std::uint64_t needed = 2 * MemoryNeed::kTriangle + 2000 * MemoryNeed::kLamp;
     CHECK(MemoryNeed(d).bytes() == needed);
@@ -76,7 +76,7 @@ TEST_CASE("a scene that does not fit into memory is refused with what it needs")
           "got 0.0008 GB");
     for (Instance& instance : d.instances) instance.material = 1;
     CHECK(build_error(d) == "");
-    // One that shines at some time only is a light all the time.
+    // A triangle that emits at some time is in the set of lights at all times.
     Keyed<Material, double> keys{{0, 1}, {d.materials[1], d.materials[0]}};
     d.material_keys[1] = keys;
     CHECK(MemoryNeed(d).bytes() == needed);
@@ -187,7 +187,7 @@ TEST_CASE(
     for (const Affine3f& m : transforms) {
         for (bool smooth : {false, true}) {
             SceneDescription d = describe(ball_mesh(3), GltfMaterial{});
-            if (smooth) d.meshes[0].normals = d.meshes[0].positions;  // of the unit ball
+            if (smooth) d.meshes[0].normals = d.meshes[0].positions;  // normals of the unit ball
             d.instances[0].world_from_local = m;
             const auto scene = Scene::build(d);
             for (int i = 0; i < 500; ++i) {

@@ -1,5 +1,5 @@
-// self_intersection_test.cpp -- rays that leave a closed convex mesh: inward ones always
-// hit it again, outward ones never; from millimetres to ten kilometres.
+// self_intersection_test.cpp -- rays that leave a closed convex mesh: inward rays always hit it again, outward rays
+// never; at scales from millimetres to ten kilometres.
 #include <doctest/doctest.h>
 
 #include "scene/scene.h"
@@ -15,7 +15,7 @@ struct Failures {
 
 enum class Kind { flattened, crowded, moving, deforming };
 
-/// Turns while it travels by its own size.
+/// A motion by the size of the mesh with a rotation.
 Motion motion_from(const Affine3f& transform) {
     const Affine3d a = to_double(transform);
     Affine3d turn = to_matrix(Quaterniond::from_axis_angle(normalize(Vec3d{1, 2, 3}), 2.5));
@@ -23,7 +23,7 @@ Motion motion_from(const Affine3f& transform) {
     return Motion::keys(std::array{0.0, 1.0}, std::array{a, a * turn}, Interpolation::decomposed);
 }
 
-/// The ball leans over from one step to the next, and stays convex.
+/// A ball that leans over between two time steps and stays convex.
 Affine3f leaning(float time) { return {{1, 0, 0}, {time, 1 + time, 0}, {0, 0, 1}, {time, 0, -time}}; }
 
 Mesh leaning_ball() {
@@ -78,7 +78,7 @@ std::vector<Affine3f> placements() {
     for (float scale : {1e-3f, 1.f, 1e3f}) {
         for (float offset : {0.f, 1.f, 1e2f, 1e4f}) {
             if (offset > 3e3f * scale)
-                continue;  // floats there are coarser than the triangles
+                continue;  // float spacing is coarser than the triangles
             const Vec3f o = Vec3f{0.7f, -0.5f, 0.6f} * offset;
             all.push_back({{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, o});
             all.push_back({{scale * 0.6f, scale * 0.8f, 0},

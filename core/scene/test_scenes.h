@@ -1,4 +1,4 @@
-// test_scenes.h -- for tests only: small meshes and one-object scenes.
+// test_scenes.h -- for tests: small meshes, and scenes of a single object.
 #pragma once
 #include <map>
 
@@ -21,7 +21,7 @@ inline Ray test_ray(Vec3f origin, Vec3f direction) {
     return ray;
 }
 
-/// Whether anything lies between, as the light of a lamp of some size finds it.
+/// Whether a shadow ray to an area light is occluded.
 inline bool occluded(const Scene& scene, Vec3f from, Vec3f direction, float distance) {
     const Wavelengths wavelengths = Wavelengths::sample(0.5f);
     Ray ray = test_ray(from, direction);
@@ -29,7 +29,7 @@ inline bool occluded(const Scene& scene, Vec3f from, Vec3f direction, float dist
     return scene.visibility(ray, false, {}, wavelengths).is_black();
 }
 
-/// Adds a mesh where it is, with a material of its own.
+/// Adds an instance of a mesh without a transform, with a new material.
 inline void add(SceneDescription& d, Mesh mesh, Material material) {
     const auto i = std::uint32_t(d.meshes.size());
     mesh.name = "mesh";
@@ -38,7 +38,7 @@ inline void add(SceneDescription& d, Mesh mesh, Material material) {
     d.instances.push_back({"it", i, i, {}});
 }
 
-/// [-1,1]^2 at z = 0, facing +z; u along +x, v along -y, as a picture hangs.
+/// Quad [-1,1]^2 at z = 0, facing +z, with u along +x and v along -y.
 inline Mesh quad_mesh() {
     Mesh mesh;
     mesh.name = "quad";
@@ -48,7 +48,7 @@ inline Mesh quad_mesh() {
     return mesh;
 }
 
-/// The unit ball from an octahedron, halved `levels` times; wound outward.
+/// The unit ball, an octahedron subdivided `levels` times, with outward winding.
 inline Mesh ball_mesh(int levels) {
     Mesh mesh;
     mesh.name = "ball";
@@ -83,7 +83,7 @@ inline SceneDescription describe(Mesh mesh, GltfMaterial material) {
     return d;
 }
 
-/// Copies far away, until the mesh is not flattened any more.
+/// Adds distant instances until the mesh is no longer flattened.
 inline void add_crowd(SceneDescription& d) {
     Instance far_away = d.instances[0];
     far_away.world_from_local = {};

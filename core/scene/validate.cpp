@@ -1,4 +1,4 @@
-// validate.cpp -- the checks of a scene description.
+// validate.cpp -- validation of a scene description.
 #include "scene/validate.h"
 
 #include "math/error.h"
@@ -49,7 +49,7 @@ void check_profiles(const SceneDescription& d) {
         for (const Material& m : keys.values) check_profile("keys of material " + std::to_string(i), m.profile, d);
 }
 
-/// Parts come before their mixture, so that none is a part of itself.
+/// Parts must precede their mixture, which excludes cycles.
 void check_mixtures(const SceneDescription& d) {
     std::vector<int> nested(d.materials.size(), 0);
     const auto check = [&](std::uint32_t i, const Material& m) {

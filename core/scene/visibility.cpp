@@ -1,4 +1,4 @@
-// visibility.cpp -- what is left of light on its way through clear surfaces.
+// visibility.cpp -- transmittance of shadow rays through clear surfaces.
 #include <algorithm>
 #include <tuple>
 
@@ -7,7 +7,7 @@
 namespace dg {
 namespace {
 
-/// Ends the ray short of a light by more than the point on it is uncertain.
+/// Ends the ray before a light, by more than the error of the point on it.
 void stop_before(Ray& ray, float distance) {
     if (!(distance < std::numeric_limits<float>::infinity())) return;
     const Vec3f from = ray.origin, end = from + ray.direction * distance;
@@ -38,8 +38,8 @@ Spectrum Scene::transmission(const Ray& ray, float distance, bool delta, const I
     return through_crossings(ray, crossings, medium, distance, wavelengths);
 }
 
-/// One crossing after the other, as a path would meet them: those that come sooner than
-/// rounding lets a ray start anew (see spawn_ray) are the same surface twice.
+/// Processes crossings in the order in which a path would hit them. Crossings closer than the offset of spawn_ray are
+/// duplicates of the same surface.
 Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
                                   float distance, const Wavelengths& wavelengths) const {
     const auto hits = std::span(crossings.hits).first(crossings.count);
