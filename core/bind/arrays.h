@@ -1,5 +1,5 @@
-// arrays.h -- numpy arrays in and out. The core reads them in place and keeps them alive; that
-// nobody changes them meanwhile is the caller's word (build.py).
+// arrays.h -- conversion of numpy arrays. The core reads arrays in place and keeps them alive; callers guarantee that
+// they are not modified (build.py).
 #pragma once
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -24,8 +24,8 @@ using RowF = nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::cpu
 using RowU = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Matrix4 = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
 
-/// A C-contiguous array in place, bit for bit, as elements of type T (void: those of the array).
-/// It goes when the last user does, on any thread: nanobind takes the interpreter's lock for that.
+/// View of a C-contiguous array as elements of type T (void: the array's type), without a copy. The array is released
+/// with the last view, on any thread: nanobind takes the interpreter's lock for that.
 template <typename T = void, typename Array>
 auto shared(const Array& array) {
     using Own = std::remove_const_t<typename Array::Scalar>;
@@ -43,7 +43,7 @@ inline Affine3d to_affine(const double* p) {
 
 inline Affine3d to_affine(const Matrix4& m) { return to_affine(m.data()); }
 
-/// A numpy array that owns a vector; shape must multiply to its size.
+/// A numpy array that owns a vector; the product of `shape` must be its size.
 template <typename T>
 nb::ndarray<nb::numpy, T> to_numpy(std::vector<T> values, std::initializer_list<std::size_t> shape) {
     auto* owned = new std::vector<T>(std::move(values));

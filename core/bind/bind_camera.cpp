@@ -1,4 +1,4 @@
-// bind_camera.cpp -- the kinds of camera.
+// bind_camera.cpp -- bindings of cameras.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -22,7 +22,7 @@ namespace {
 
 using Picture = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
-/// Rays for explicit film points and lens samples, as arrays in the world (m): for tests and maps.
+/// World rays (m) for given film points and lens samples, for tests and maps.
 auto rays(const dg::Camera& camera, const dg::bind::Rows2f& film_mm, const dg::bind::Rows2f& u_lens,
           const nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::cpu>& wavelength_nm) {
     const std::size_t n = film_mm.shape(0);
@@ -51,7 +51,7 @@ auto rays(const dg::Camera& camera, const dg::bind::Rows2f& film_mm, const dg::b
 using Rows3d = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Rows2d = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 
-/// Chief rays of film points, in the camera's frame.
+/// Chief rays of film points, in the camera frame.
 auto chief_rays(const dg::ChiefRays& chief, const Rows2d& film_mm) {
     const std::size_t n = film_mm.shape(0);
     std::vector<double> origins, directions;
@@ -63,7 +63,7 @@ auto chief_rays(const dg::ChiefRays& chief, const Rows2d& film_mm) {
                       dg::bind::to_numpy(std::move(directions), {n, std::size_t(3)})};
 }
 
-/// Film points of points of the camera's frame, or of directions; NaN where there is none.
+/// Film points of points or directions in the camera frame; NaN where there is none.
 auto film_points(const dg::ChiefRays& chief, const Rows3d& points, bool at_infinity) {
     const std::size_t n = points.shape(0);
     std::vector<double> film(2 * n, std::numeric_limits<double>::quiet_NaN());
@@ -195,7 +195,7 @@ void bind_chief_rays(nb::module_& m) {
              "Where the chief rays of points (N, 3) meet the film (mm, upright); NaN: behind the camera.");
 }
 
-/// One maker for each kind of camera.
+/// Constructors, one per kind of camera.
 void def_kinds(nb::class_<dg::Camera>& c) {
     using namespace dg;
     c.def_static("pinhole",

@@ -1,4 +1,4 @@
-// bind_cancel.cpp -- CancelToken: another thread of Python ends long work in the core.
+// bind_cancel.cpp -- CancelToken, with which another Python thread cancels long work in the core.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
@@ -14,13 +14,13 @@ using dg::CancelToken;
 
 namespace {
 
-/// Scopes of this thread, the innermost last: each `with` of Python is one.
+/// Stack of this thread's scopes, each a `with` block of Python.
 thread_local std::vector<std::unique_ptr<CancelScope>> scopes;
 
 }  // namespace
 
 void bind_cancel(nb::module_& m) {
-    // For as long as the process runs, as the translator needs it.
+    // Never released, as the exception translator needs it.
     static PyObject* type = nullptr;
     const std::string name = nb::cast<std::string>(m.attr("__name__")) + ".Cancelled";
     type = PyErr_NewExceptionWithDoc(name.c_str(), "Work that its CancelToken ended.", nullptr, nullptr);

@@ -1,4 +1,4 @@
-// bind_codec.cpp -- packed bytes to bytes.
+// bind_codec.cpp -- bindings of decoders.
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
@@ -46,7 +46,7 @@ void undo_exr_predictor(const PackedBytes& packed, const WritableBytes& pixels) 
     dg::undo_exr_predictor({packed.data(), packed.size()}, {pixels.data(), pixels.size()});
 }
 
-/// Type of the length of a list ("<u1"; empty: none), and bytes of a number.
+/// Type of the length field of a list ("<u1"; empty: none), and bytes per number.
 using Field = std::pair<std::string, std::size_t>;
 
 std::vector<RowField> to_fields(const std::vector<Field>& fields) {

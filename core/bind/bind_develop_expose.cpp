@@ -1,4 +1,4 @@
-// bind_develop_expose.cpp -- from exposure to the numbers of a sensor.
+// bind_develop_expose.cpp -- conversion of exposure to sensor values.
 #include "bind/arrays.h"
 #include "bind/unlocked.h"
 #include "develop/expose.h"

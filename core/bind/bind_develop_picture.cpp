@@ -1,4 +1,4 @@
-// bind_develop_picture.cpp -- channels into pictures.
+// bind_develop_picture.cpp -- conversion of sensor channels to pictures.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string_view.h>

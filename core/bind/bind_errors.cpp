@@ -1,4 +1,4 @@
-// bind_errors.cpp -- dg::Error and dg::LensError as Python exceptions that carry their fields.
+// bind_errors.cpp -- translates dg::Error and dg::LensError to Python exceptions with their fields.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
@@ -10,11 +10,11 @@ namespace nb = nanobind;
 
 namespace {
 
-// For as long as the process runs: the translator needs them until the last exception.
+// Never released: the translator needs them until the last exception.
 PyObject* error_type = nullptr;
 PyObject* lens_error_type = nullptr;
 
-/// A new exception of the module; the class itself has the fields as well, empty.
+/// Creates an exception class of the module; the class attributes of the fields are empty.
 PyObject* add_exception(nb::module_& m, const char* name, const char* doc, PyObject* base) {
     nb::dict fields;
     fields["message"] = "";

@@ -25,7 +25,7 @@ dg::FocusFrom focus_from(bool sensor) {
     return sensor ? dg::FocusFrom::sensor : dg::FocusFrom::pupil;
 }
 
-/// Sums (surfaces, 7): S1 to S5, C1, C2; their totals are their column sums.
+/// Seidel sums (surfaces, 7): S1 to S5, C1, C2; totals are the column sums.
 auto seidel_sums(const dg::Prescription& lens, double wavelength_nm, double pupil_radius,
                  double field_slope, double object_distance, double short_nm, double long_nm) {
     const dg::Seidel sums =

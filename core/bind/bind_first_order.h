@@ -1,4 +1,4 @@
-// bind_first_order.h -- what bind_first_order.cpp adds to the class of prescriptions.
+// bind_first_order.h -- additions of bind_first_order.cpp to the class of prescriptions.
 #pragma once
 #include <nanobind/nanobind.h>
 

@@ -36,7 +36,7 @@ auto spots(const dg::GhostLens& lens, double angle, Pair film_half, const std::v
     return out;
 }
 
-/// Points (K, 3) where a ray met the surfaces of its way, then the film; empty if it is stopped.
+/// Points (K, 3) where a ray hits the surfaces of a ghost and the film; empty if it is blocked.
 auto path(const dg::GhostLens& lens, const dg::Mirrors& mirrors, const std::array<double, 3>& origin,
           const std::array<double, 3>& direction, double nm) {
     const int count = int(lens.tracer().vertices().size());

@@ -12,7 +12,7 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-/// A glass that is told at once when its numbers make no sense.
+/// A glass, validated immediately.
 dg::Glass checked(dg::Glass glass) {
     dg::check_glass(glass, "glass");
     return glass;

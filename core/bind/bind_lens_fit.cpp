@@ -1,5 +1,4 @@
-// bind_lens_fit.cpp -- fitted lenses: the parts of the data, and what they say of film
-// rays.
+// bind_lens_fit.cpp -- fitted lenses: their data, and evaluation of rays.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -133,7 +132,7 @@ void bind_error(nb::module_& m) {
         .def_rw("zones", &FitError::zones);
 }
 
-/// The fit, whose parts anybody may have changed since it was made.
+/// A validated copy of the fit, as Python may have changed its parts.
 const dg::LensFit& checked(const dg::LensFit& fit) {
     check_lens_fit(fit);
     return fit;
@@ -154,8 +153,8 @@ std::size_t equal_lengths(const Rows2d& film, const Rows2d& slopes, const Column
     return n;
 }
 
-/// Directions (rad) and offsets, iris points, mounts (N, M, 2), transmittances, whether
-/// within, origins and unit directions of the scene rays.
+/// Directions (rad) and offsets, iris points, mounts (N, M, 2), transmittances, validity, and origins and unit
+/// directions of the scene rays.
 auto evaluate(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes,
               const Column& nm) {
     const std::size_t n = equal_lengths(film, slopes, nm);
@@ -182,8 +181,7 @@ auto evaluate(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes,
         to_numpy(std::move(origin), {n, 3}), to_numpy(std::move(unit), {n, 3}));
 }
 
-/// Film points and slopes of scene rays (lens frame, mm); NaN where the search leaves the
-/// fit.
+/// Film points and slopes of scene rays (lens frame, mm); NaN where the iteration leaves the domain of the fit.
 auto to_film(const dg::LensFit& fit, const Rows3d& origins, const Rows3d& directions,
              const Column& nm) {
     const std::size_t n = same_count(origins.shape(0), directions.shape(0), "directions");
@@ -259,8 +257,7 @@ dg::LensFit refitted(const dg::LensFit& fit, const Rows2d& film, const Rows2d& s
     return dg::refit_rays(checked(fit), rays, scene);
 }
 
-/// CPU seconds of this thread a ray through the kernels, both ways, over the given film
-/// rays.
+/// CPU seconds of this thread per ray for the kernels in both directions, over the given film rays.
 Pair seconds_a_ray(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes,
                    const Column& nm, int repeats) {
     const std::size_t n = equal_lengths(film, slopes, nm);
@@ -300,7 +297,7 @@ nb::bytes bytes(const dg::LensFit& fit) {
     return nb::bytes(b.data(), b.size());
 }
 
-/// Parts of a fit, which files keep.
+/// Parts of a fit that files store.
 void def_data(nb::class_<dg::LensFit>& c) {
     using namespace dg;
     c.def_rw("lens", &LensFit::lens)

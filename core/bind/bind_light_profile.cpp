@@ -1,4 +1,4 @@
-// bind_light_profile.cpp -- light that depends on direction, from arrays.
+// bind_light_profile.cpp -- light profiles from arrays.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/tuple.h>

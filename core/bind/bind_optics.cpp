@@ -37,8 +37,7 @@ std::vector<dg::CameraSample> camera_samples(const dg::bind::Rows2f& film_mm,
     return samples;
 }
 
-/// Rays in the camera frame (m): origins, directions, weights, weights before
-/// transmittance.
+/// Rays in the camera frame (m): origins, directions, weights, weights without transmittance.
 auto generate(const dg::ExactLens& lens, const dg::bind::Rows2f& film_mm,
               const dg::bind::Rows2f& u_lens, const ColumnF& wavelength_nm) {
     const auto samples = camera_samples(film_mm, u_lens, wavelength_nm);
@@ -58,7 +57,7 @@ auto generate(const dg::ExactLens& lens, const dg::bind::Rows2f& film_mm,
                           dg::bind::to_numpy(std::move(aims), {n}));
 }
 
-/// The aim_state of the lens if its fit were another.
+/// The aim_state of the lens with another fit.
 nb::bytes state_with_fit(const dg::ExactLens& lens, const dg::LensFit& fit) {
     const std::string bytes = lens.aim_state(), key = bytes.substr(0, 32);
     auto state = dg::aim_from_bytes(bytes, key);
@@ -68,7 +67,7 @@ nb::bytes state_with_fit(const dg::ExactLens& lens, const dg::LensFit& fit) {
     return nb::bytes(other.data(), other.size());
 }
 
-/// Draws the samples `repeats` times in this thread: rays that passed, its CPU seconds.
+/// Traces the samples `repeats` times in this thread; returns the number of rays that passed, and CPU seconds.
 std::pair<std::uint64_t, double> time_generate(const dg::ExactLens& lens,
                                                const dg::bind::Rows2f& film_mm,
                                                const dg::bind::Rows2f& u_lens,
@@ -114,7 +113,7 @@ void bind_settings(nb::module_& m) {
     dg::bind::def_pair(c, "film_half_mm", &S::film_half_mm, "Half its size; (0, 0): all within half_diagonal_mm.");
 }
 
-/// Building a lens, and what its set-up found out.
+/// Constructor of a lens, and results of its set-up.
 void def_set_up(nb::class_<dg::ExactLens>& c) {
     using namespace dg;
     c.def(
@@ -122,7 +121,7 @@ void def_set_up(nb::class_<dg::ExactLens>& c) {
          [](ExactLens* self, const Prescription& lens, ExactLensSettings settings,
             const std::optional<nb::bytes>& cache) {
              if (cache) settings.cache.assign(cache->c_str(), cache->size());
-             dg::bind::Unlocked release;   // states of a lens are set up side by side
+             dg::bind::Unlocked release;   // states of a lens are set up in parallel
              new (self) ExactLens(lens, settings);
          },
          "prescription"_a, "settings"_a, "cache"_a = nb::none(),
@@ -139,7 +138,7 @@ void def_set_up(nb::class_<dg::ExactLens>& c) {
              "Its aim_state with another fit in place of its own, for comparisons.");
 }
 
-/// The same lens with or without something.
+/// Copies of the lens with a changed option.
 void def_variants(nb::class_<dg::ExactLens>& c) {
     using namespace dg;
     c.def("with_dirt",

@@ -29,7 +29,7 @@ using Coefficients =
 using Numbers = std::vector<double>;
 using RayList = std::vector<dg::RayNumbers>;
 
-/// A system of one map for each node, or of one map for no nodes: make(i).
+/// A system with maps make(i), one per node, or a single map without nodes.
 template <typename Make>
 PolynomialSystem for_nodes(const Numbers& nm, const Make& make) {
     PolynomialSystem system{nm, {}};
@@ -39,7 +39,7 @@ PolynomialSystem for_nodes(const Numbers& nm, const Make& make) {
     return system;
 }
 
-/// The entry of node i; a single one is that of all.
+/// The entry of node i; a single entry is shared by all nodes.
 template <typename T>
 const T& entry(const std::vector<T>& list, std::size_t i) {
     const std::size_t k = list.size() == 1 ? 0 : i;
@@ -51,7 +51,7 @@ const T& entry(const std::vector<T>& list, std::size_t i) {
 
 PolynomialSystem from_arrays(int degree, const Numbers& nm, const RayList& origin,
                              const Coefficients& c) {
-    dg::ray_series(degree, {});  // a degree that there is
+    dg::ray_series(degree, {});  // validates the degree
     const dg::Monomials& m = dg::Monomials::of(degree);
     if (c.shape(0) != std::max<std::size_t>(1, nm.size()) || int(c.shape(2)) != m.count())
         throw dg::input_error("polynomial system", "coefficients",
@@ -92,7 +92,7 @@ auto origin(const PolynomialSystem& s) {
     return dg::bind::to_numpy(std::move(flat), {s.maps.size(), 4});
 }
 
-/// Calls each(i, ray i, the map at its wavelength). One wavelength is that of all rays.
+/// Calls each(i, ray i, the map at its wavelength). A single wavelength applies to all rays.
 template <typename Each>
 void for_rays(const PolynomialSystem& s, const Rays& rays, const Column& nm,
               const Each& each) {

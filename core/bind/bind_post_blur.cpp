@@ -1,4 +1,4 @@
-// bind_post_blur.cpp -- light of pixels spread over others: depth of field and motion blur.
+// bind_post_blur.cpp -- depth of field and motion blur in post.
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
@@ -44,7 +44,7 @@ dg::SpreadRows rows_of(const Colours& image, std::pair<int, int> rows) {
     return {begin, end};
 }
 
-/// Rows made by `make` without the interpreter's lock.
+/// Rows computed by `make` without the interpreter's lock.
 template <typename Make>
 auto made_rows(const Colours& image, dg::SpreadRows rows, const Make& make) {
     std::vector<float> out;

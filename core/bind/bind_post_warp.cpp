@@ -1,4 +1,4 @@
-// bind_post_warp.cpp -- pictures through maps.
+// bind_post_warp.cpp -- warps pictures by maps.
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
@@ -27,7 +27,7 @@ auto values_of(const A& array) {
     return std::span(array.data(), array.size());
 }
 
-/// Keeps its arrays, so that the map may look at them.
+/// Keeps the arrays alive that the map refers to.
 struct BoundMap {
     Nodes nodes;
     Exact exact;

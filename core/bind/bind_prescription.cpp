@@ -52,7 +52,7 @@ void for_rays(const dg::Tracer& tracer, const Column& wavelength_nm, const Each&
     oneapi::tbb::parallel_for(
         oneapi::tbb::blocked_range<std::size_t>(0, wavelength_nm.shape(0), kGrain),
         [&](const auto& range) {
-            std::optional<dg::LensIndices> index;  // no wavelength stands for none
+            std::optional<dg::LensIndices> index;  // empty: no ray yet
             for (std::size_t i = range.begin(); i != range.end(); ++i) {
                 if (!index || wavelength_nm(i) != index->wavelength_nm)
                     index = tracer.at(wavelength_nm(i));
@@ -61,8 +61,7 @@ void for_rays(const dg::Tracer& tracer, const Column& wavelength_nm, const Each&
         });
 }
 
-/// Points (N, 3) on the plane image_z, and unit directions there; NaN where a ray is
-/// stopped.
+/// Points (N, 3) on the plane image_z, and unit directions there; NaN for blocked rays.
 auto trace(const dg::Prescription& lens, const Rows3d& origins, const Rows3d& directions,
            const Column& wavelength_nm, double image_z, bool clip) {
     const std::size_t n = check_lengths(lens, origins, directions, wavelength_nm);
@@ -80,7 +79,7 @@ auto trace(const dg::Prescription& lens, const Rows3d& origins, const Rows3d& di
                           dg::bind::to_numpy(std::move(exits), {n, 3}));
 }
 
-/// Every ray at the last surface that it met, and which one stopped it.
+/// Each ray at the last surface that it hit, and the surface that blocked it.
 auto rays(const dg::Prescription& lens, const Rows3d& origins, const Rows3d& directions,
           const Column& wavelength_nm, bool clip, bool toward_film,
           std::optional<std::pair<int, int>> ghost) {
@@ -112,8 +111,7 @@ auto rays(const dg::Prescription& lens, const Rows3d& origins, const Rows3d& dir
                           to_numpy(std::move(stopped), {n}));
 }
 
-/// Points (K, 3) on the surfaces along one ray, object side first; empty if it is
-/// stopped.
+/// Points (K, 3) on the surfaces along a ray, object side first; empty if it is blocked.
 auto path(const dg::Prescription& lens, const Rows3d& origin, const Rows3d& direction,
           double wavelength_nm, bool clip) {
     if (origin.shape(0) != 1 || direction.shape(0) != 1)

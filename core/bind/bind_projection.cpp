@@ -19,7 +19,7 @@ using Rows2d = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::dev
 using Rows3d = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// In the order of ProjectionModel::Kind.
+/// Names in the order of ProjectionModel::Kind.
 constexpr const char* kNames[] = {"rectilinear", "equidistant",    "equisolid",     "stereographic", "orthographic",
                                   "equirectangular", "cube",       "opencv",        "kannala_brandt", "double_sphere",
                                   "eucm",        "omni",           "fov",           "opencv_inverse", "ftheta"};

@@ -1,4 +1,4 @@
-// bind_ray_map.cpp -- each pixel's ray.
+// bind_ray_map.cpp -- chief rays of pixels.
 #include <nanobind/stl/tuple.h>
 
 #include "bind/arrays.h"

@@ -1,4 +1,4 @@
-// bind_render.cpp -- draw samples into a film.
+// bind_render.cpp -- renders samples to a film.
 #include <nanobind/operators.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/pair.h>
@@ -25,7 +25,7 @@ using namespace nb::literals;
 
 namespace {
 
-/// Python's callback, called at most every 100 ms from whichever thread comes first.
+/// Python's progress callback, called by any thread, at most every 100 ms.
 class Progress {
   public:
     explicit Progress(nb::object callback) : callback_(std::move(callback)) {}
@@ -54,7 +54,7 @@ class Progress {
     std::atomic<bool> stopped_{false};
 };
 
-/// Draws with Python's lock released, its callback asked now and then: whether all was drawn, and counts.
+/// Renders without Python's lock and calls its callback at intervals; returns whether it finished, and counters.
 std::pair<bool, dg::RenderCounters> draw(const dg::Scene& scene, const dg::Camera& camera, dg::Film& film,
                                          const dg::RenderSettings& settings, nb::object callback) {
     Progress progress(std::move(callback));
@@ -70,7 +70,7 @@ std::pair<bool, dg::RenderCounters> draw(const dg::Scene& scene, const dg::Camer
 
 using Counts = nb::ndarray<const std::uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
-/// Parts [first, last) of a round: count samples of each pixel from index begin on. Keeps its arrays.
+/// Parts [first, last) of a round: `count` samples of each pixel from index `begin` on. Keeps the arrays alive.
 struct Round {
     Counts begin, count;
     std::uint32_t first, last;

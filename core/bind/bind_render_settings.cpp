@@ -1,4 +1,4 @@
-// bind_render_settings.cpp -- how a picture is drawn: frame, samples, light transport, references.
+// bind_render_settings.cpp -- render settings: frame, samples, light transport, references.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -27,7 +27,7 @@ using Corners = std::tuple<int, int, int, int>;
 Corners corners(const PixelBox& box) { return {box.x0, box.y0, box.x1, box.y1}; }
 PixelBox box_of(const Corners& c) { return {std::get<0>(c), std::get<1>(c), std::get<2>(c), std::get<3>(c)}; }
 
-/// Numbers of paths per sample index, checked.
+/// Validated numbers of paths per sample index.
 double paths(double n, const char* what, const char* wanted) {
     if (!(n >= 0 && n <= kMostLightPaths)) throw input_error("render", what, wanted, std::to_string(n));
     return n;
@@ -219,7 +219,7 @@ void def_background(Settings& c) {
              "Photograph of the set (H, W, 3), cd/m2, by another camera and its settings.");
 }
 
-/// Who draws what several could: to check one against the other.
+/// Choice of a technique where several apply, to compare them.
 void def_references(Settings& c) {
     c.def_prop_rw("technique", [](const RenderSettings& s) { return int(s.technique); },
                   [](RenderSettings& s, const std::string& name) {

@@ -1,4 +1,4 @@
-// bind_scatter.cpp -- what the parts of a lens scatter, and walks through one on the bench.
+// bind_scatter.cpp -- scattering parts of a lens, and random walks through a lens on the bench.
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>

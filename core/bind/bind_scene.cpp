@@ -44,7 +44,7 @@ MinFilter to_min_filter(const std::string& name) {
                               {"linear_mipmap_linear", {kLinear, Mip::linear}}});
 }
 
-/// Vectors of one moment, (N, 3), or of equal steps over the interval, (S, N, 3).
+/// Vectors at one time, (N, 3), or at equal steps over the interval, (S, N, 3).
 using Vectors3 = std::variant<Rows3f, Steps3f>;
 using Vectors4 = std::variant<Rows4f, Steps4f>;
 
@@ -62,7 +62,7 @@ std::shared_ptr<const Shown> to_shown(const Intervals& intervals) {
     return std::make_shared<const Shown>(std::move(shown));
 }
 
-/// Collects the parts; Scene::build checks them.
+/// Collects the parts of a scene; Scene::build validates them.
 struct Builder {
     SceneDescription description;
 
@@ -85,7 +85,7 @@ struct Builder {
         return int(description.meshes.size()) - 1;
     }
 
-    /// Curves; `shape` is (basis is cubic, closed).
+    /// Adds curves; `shape` is (basis is cubic, closed).
     int add_curves(const std::string& name, const Vectors3& positions, const RowF& radii,
                    const RowU& starts, const RowU& ends, std::pair<bool, bool> shape,
                    std::optional<Rows2f> uv, std::optional<Rows4f> colors) {
@@ -152,7 +152,7 @@ struct Builder {
         return int(description.instances.size()) - 1;
     }
 
-    /// Makes an instance a part of the set.
+    /// Makes an instance a catcher.
     void set_catcher(std::uint32_t instance, bool shadow, bool reflection, bool gi) {
         description.instances.at(instance).catcher = CatcherEffects{shadow, reflection, gi};
     }
@@ -187,7 +187,7 @@ struct Builder {
     }
 
   private:
-    /// The last of the list, as many as there are times, become keys of one.
+    /// Replaces the last entries of a list, one per time, by a single entry with keys.
     template <typename T>
     static void fold(std::vector<T>& list, const std::vector<double>& times,
                      std::map<std::uint32_t, Keyed<T, double>>& keys) {
@@ -228,7 +228,7 @@ void bind_built_scene(nb::module_& m) {
              "Distance (m) and instance index of the nearest surface at mid-interval, beyond t_min, or None.");
 }
 
-/// Meshes, textures, and where meshes stand.
+/// Methods for meshes, textures and instances.
 void def_shapes(nb::class_<Builder>& c) {
     c.def("add_mesh", &Builder::add_mesh, "name"_a, "positions"_a, "triangles"_a,
              "normals"_a.none(), "uv0"_a.none(), "uv1"_a.none(), "tangents"_a.none(),
@@ -246,7 +246,7 @@ void def_shapes(nb::class_<Builder>& c) {
              "Makes an instance a part of the set: which effects of objects it catches.");
 }
 
-/// Media that fill meshes, and the world around them.
+/// Methods for media inside meshes and around the scene.
 void def_media(nb::class_<Builder>& c) {
     c.def("add_medium", &Builder::add_medium, "absorption"_a, "scattering"_a, "emission"_a, "lobes"_a,
              "density"_a.none())
@@ -256,14 +256,14 @@ void def_media(nb::class_<Builder>& c) {
         .def("set_fog", [](Builder& b, int medium) { b.description.media.fog = medium; }, "medium"_a);
 }
 
-/// Index of a profile, -1 without, and the axes of the lamp in the world.
+/// A lamp's profile by index (-1: none) and its axes in the world.
 using Lamp = std::tuple<int, Triple, Triple, Triple>;
 LampShape to_lamp(const Lamp& lamp) {
     const auto& [profile, x, y, z] = lamp;
     return {profile, {to_double(vec(x)), to_double(vec(y)), to_double(vec(z)), {}}};
 }
 
-/// One maker for each kind of light that is no mesh.
+/// Methods for each kind of light without a mesh.
 void def_lights(nb::class_<Builder>& c) {
     c.def("add_profile", &Builder::add_profile, "profile"_a)
         .def("add_point_light",
@@ -286,7 +286,7 @@ void def_lights(nb::class_<Builder>& c) {
              });
 }
 
-/// Light from infinitely far away.
+/// Methods for light from infinity.
 void def_environment(nb::class_<Builder>& c) {
     c.def("set_environment_image",
              [](Builder& b, const PixelsF& pixels, float scale, const Matrix4& matrix) {
@@ -306,7 +306,7 @@ void def_environment(nb::class_<Builder>& c) {
              });
 }
 
-/// Motion while the picture is exposed.
+/// Methods for motion during the exposure.
 void def_time(nb::class_<Builder>& c) {
     c.def("set_interval",
              [](Builder& b, double open_s, double close_s) {
@@ -321,7 +321,7 @@ void def_time(nb::class_<Builder>& c) {
              "Poses of the environment: RGB that its light is multiplied by, and a turn about +y, rad.");
 }
 
-/// From parts to a scene.
+/// Builds a scene from its parts.
 void def_build(nb::class_<Builder>& c) {
     c.def("build",
              [](Builder& b, const std::string& light_choice, std::uint64_t free_memory) {

@@ -1,4 +1,4 @@
-// bind_spectrum.cpp -- the tables of colour that spectra are made with.
+// bind_spectrum.cpp -- colour tables of spectra.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/vector.h>
 

@@ -1,4 +1,4 @@
-// bind_truth.cpp -- ground truth at a stated time, and motion in pixels.
+// bind_truth.cpp -- ground truth at a time, and motion in pixels.
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
@@ -26,7 +26,7 @@ nb::object plane(const dg::TruthPlanes& truth, const Make& value_at) {
                                                         std::size_t(truth.region.width)}));
 }
 
-/// A plane by the name that it has in files.
+/// A plane by its name in files.
 nb::object plane_named(const dg::TruthPlanes& t, const std::string& name) {
     std::string known;
     for (const dg::TruthChannel& channel : dg::kTruthChannels) {
@@ -39,13 +39,13 @@ nb::object plane_named(const dg::TruthPlanes& t, const std::string& name) {
     throw dg::input_error("truth", "plane", "one of " + known, name);
 }
 
-/// The means have one more.
+/// Planes of means, which have an additional channel.
 nb::object mean_plane_named(const dg::MeanTruth& t, const std::string& name) {
     if (name == dg::kCoverageChannel) return plane(t, [&](std::size_t i) { return t.coverage[i]; });
     return plane_named(t, name);
 }
 
-/// One point, px, of each pixel that make() gives.
+/// Points (px), one per pixel, computed by make().
 template <typename Make>
 auto points_of(const dg::FilmLayout& region, const Make& make) {
     std::vector<double> flat;
@@ -79,7 +79,7 @@ auto mean_motion_of(const dg::Scene& scene, const dg::Camera& camera,
 
 using GroupArray = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-/// Checked: one for each instance, and below `count` where there is one.
+/// Validates group indices: one per instance, below `count` or none.
 dg::Groups groups_of(const dg::Scene& scene, const GroupArray& groups, std::size_t count) {
     const std::size_t instances = scene.description().instances.size();
     const dg::Groups given{groups.data(), groups.shape(0)};
@@ -93,7 +93,7 @@ dg::Groups groups_of(const dg::Scene& scene, const GroupArray& groups, std::size
     return given;
 }
 
-/// (visible, whole) of each group and the pixels of the whole, x0 y0 x1 y1.
+/// (visible, whole) pixel counts of each group, and the bounds of the whole, x0 y0 x1 y1.
 auto silhouettes_of(const dg::Scene& scene, const dg::Camera& camera,
                     const dg::RenderSettings& settings, const Crop& crop,
                     const GroupArray& groups, std::size_t count) {
@@ -112,7 +112,7 @@ auto silhouettes_of(const dg::Scene& scene, const dg::Camera& camera,
                       dg::bind::to_numpy(std::move(boxes), {count, std::size_t(4)})};
 }
 
-/// x0 y0 x1 y1 of each group, NaN where it has no place, and whether it is open.
+/// Bounds x0 y0 x1 y1 of each group, NaN if it is not imaged, and whether it is open.
 auto outlines_of(const dg::Scene& scene, const dg::Camera& camera,
                  const dg::RenderSettings& settings, const GroupArray& groups,
                  std::size_t count) {

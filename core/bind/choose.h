@@ -1,4 +1,4 @@
-// choose.h -- words from Python that name one of a few.
+// choose.h -- converts names from Python to enum values.
 #pragma once
 #include <initializer_list>
 #include <string>

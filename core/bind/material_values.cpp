@@ -17,17 +17,17 @@ namespace {
 using Triple = std::array<float, 3>;
 Rgb to_rgb(const Triple& c) { return {c[0], c[1], c[2]}; }
 
-/// The fields of a class of Python's.
+/// Fields of a Python record.
 struct Fields {
     const nb::dict& values;
 
     float number(const char* key) const { return nb::cast<float>(values[key]); }
-    /// True or false, also as a number.
+    /// A bool, or a number as a bool.
     bool flag(const char* key) const { return bool(nb::bool_(nb::object(values[key]))); }
     std::uint32_t index(const char* key) const { return nb::cast<std::uint32_t>(values[key]); }
     Rgb rgb(const char* key) const { return to_rgb(nb::cast<Triple>(values[key])); }
     TextureSlot slot(const char* key) const { return to_slot(values[key]); }
-    /// Null where there is a number or a colour.
+    /// A spectrum; null if the field is a number or a colour.
     std::shared_ptr<const SampledSpectrum> sampled(const char* key) const {
         const nb::object value = values[key];
         if (!nb::isinstance<SampledSpectrum>(value)) return nullptr;

@@ -1,4 +1,4 @@
-// material_values.h -- materials from Python: dicts of the fields of its classes, by name.
+// material_values.h -- converts materials from Python, given as dicts of fields.
 #pragma once
 #include <nanobind/nanobind.h>
 
@@ -8,11 +8,11 @@
 
 namespace dg::bind {
 
-/// A slot as (texture, uv_set, transform) or None.
+/// A texture slot, as (texture, uv_set, transform) or None.
 TextureSlot to_slot(nanobind::handle value);
 
-/// `kind`: diffuse, conductor, dielectric, coated, mix, boundary or gltf. `values`: its fields. `common`: those of the
-/// material, with the index of its profile. Throws Error.
+/// `kind`: diffuse, conductor, dielectric, coated, mix, boundary or gltf. `values`: fields of the kind. `common`:
+/// fields of all materials, with the index of the profile. Throws Error for invalid values.
 Material to_material(const std::string& name, const std::string& kind, const nanobind::dict& values,
                      const nanobind::dict& common);
 

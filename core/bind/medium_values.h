@@ -1,4 +1,4 @@
-// medium_values.h -- media from Python.
+// medium_values.h -- converts media from Python.
 #pragma once
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -21,7 +21,7 @@ namespace dg::bind {
 
 /// A colour, or wavelengths (nm) and values.
 using MediumColor = std::variant<std::array<float, 3>, std::pair<std::vector<double>, std::vector<double>>>;
-/// Densities (Z, Y, X), and the space of the grid from the unit cube.
+/// Densities (Z, Y, X), and the transform from the unit cube to the space of the grid.
 using Densities = nanobind::ndarray<const float, nanobind::ndim<3>, nanobind::c_contig, nanobind::device::cpu>;
 using MediumGrid = std::optional<std::pair<Densities, Matrix4>>;
 
@@ -31,7 +31,7 @@ struct MediumValues {
     MediumGrid density;
 };
 
-/// Throws Error.
+/// Throws Error for invalid values.
 std::shared_ptr<const Medium> to_medium(const MediumValues& values);
 
 }  // namespace dg::bind

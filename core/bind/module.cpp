@@ -36,7 +36,7 @@ void bind_post_blur(nb::module_& m);
 void bind_post_grain(nb::module_& m);
 void bind_post_waves(nb::module_& m);
 
-/// Has nanobind make its type of arrays now: where memory is short at the first array, it ends the process.
+/// Makes nanobind create its array type now: it would abort if memory ran out at the first array.
 void make_array_type() {
     static const float zero = 0;
     nb::cast(nb::ndarray<nb::memview, const float, nb::shape<1>, nb::device::cpu>(&zero, {1}, nb::none()));

@@ -1,4 +1,4 @@
-// region.h -- part of a frame, as Python names it.
+// region.h -- regions of a frame from Python.
 #pragma once
 #include <string>
 #include <tuple>
@@ -10,7 +10,7 @@ namespace dg::bind {
 
 using Crop = std::tuple<int, int, int, int>;
 
-/// The pixels (x0, y0, x1, y1), end exclusive; Error unless there is one at least.
+/// Region of the pixels (x0, y0, x1, y1), end exclusive. Throws Error if it is empty.
 inline FilmLayout region_of(const Crop& crop, const char* where) {
     const auto [x0, y0, x1, y1] = crop;
     const std::int64_t width = std::int64_t(x1) - x0, height = std::int64_t(y1) - y0;

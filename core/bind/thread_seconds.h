@@ -1,10 +1,10 @@
-// thread_seconds.h -- the clock of benches.
+// thread_seconds.h -- clock for benchmarks.
 #pragma once
 #include <ctime>
 
 namespace dg::bind {
 
-/// CPU seconds of this thread: unlike the wall clock, the same on a busy machine.
+/// CPU seconds of this thread, which do not depend on the load of the machine.
 inline double thread_seconds() {
     timespec t{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

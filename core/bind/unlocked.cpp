@@ -1,4 +1,4 @@
-// unlocked.cpp -- before a fork, in the child, and at the end of Python.
+// unlocked.cpp -- handlers before a fork, in the child, and at the exit of Python.
 #include "bind/unlocked.h"
 
 #include <pthread.h>
@@ -21,30 +21,31 @@ namespace dg::bind {
 namespace {
 
 std::atomic<bool> ending{false};
-std::atomic<std::thread::id> last_thread{};   // the one in which Python ends
-const std::thread::id first_thread = std::this_thread::get_id();   // the one that imports the core
+std::atomic<std::thread::id> last_thread{};   // the thread in which Python exits
+const std::thread::id first_thread = std::this_thread::get_id();   // the thread that imports the core
 
 using Workers = oneapi::tbb::task_scheduler_handle;
 
-/// Keeps oneTBB's workers while no thread of Python refers to them. Never destroyed: that takes locks.
+/// Keeps oneTBB's workers alive while no Python thread refers to them. Never destroyed, as destruction takes locks.
 Workers* const kept_workers = new Workers;
 bool ended = false;           // whether the workers ended before this fork
-thread_local int depth = 0;   // scopes `Unlocked` of this thread, in callbacks of one another
+thread_local int depth = 0;   // nested `Unlocked` scopes of this thread, through callbacks
 
 void keep_workers() {
     *kept_workers = Workers{oneapi::tbb::attach{}};
 }
 
-/// Drops what this thread refers to, so that the workers can end though it lives on. Else a fork while it
-/// sleeps would leave them running, and one that goes to sleep itself holds a lock that the child waits for.
-/// The first thread keeps it: glibc reads the map of the whole memory, 0.4 ms, when oneTBB asks for its stack again.
+/// Drops this thread's reference to the workers, so that they can end while the thread lives. Otherwise a fork while
+/// the thread sleeps would leave them running, and a worker that goes to sleep holds a lock that the child waits for.
+/// The first thread keeps its reference, as oneTBB would query its stack again, for which glibc parses the memory map
+/// (0.4 ms).
 void detach_thread() {
     if (std::this_thread::get_id() == first_thread) return;
     Workers here{oneapi::tbb::attach{}};
-    oneapi::tbb::finalize(here, std::nothrow);   // false: the workers are still kept
+    oneapi::tbb::finalize(here, std::nothrow);   // false: other references remain
 }
 
-/// Ends the workers: one that goes to sleep holds locks of oneTBB for a moment; one that has ended holds none.
+/// Ends the workers, since a worker that goes to sleep briefly holds locks of oneTBB.
 void before_fork() {
     ended = false;
     if (forks::working != 0 || forks::torn) return;
@@ -59,10 +60,10 @@ void in_child() {
     forks::working = 0;
     if (ended) after_fork();
     else forks::torn = true;
-    nb::set_leak_warnings(false);   // the parent's other threads keep what they referred to
+    nb::set_leak_warnings(false);   // references of the parent's other threads remain
 }
 
-/// At the end of Python a thread that asked for its lock would be ended there and then, and C++ with it.
+/// When Python exits, a thread that requests its lock would be killed, inside C++ code.
 void park() {
     for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
@@ -70,7 +71,7 @@ void park() {
 void at_exit() {
     last_thread = std::this_thread::get_id();
     ending = true;
-    // Daemon threads keep what they refer to, which is no fault.
+    // References of daemon threads remain, which is no leak.
     if (nb::len(nb::module_::import_("sys").attr("_current_frames")()) > 1) nb::set_leak_warnings(false);
     const nb::gil_scoped_release release;
     while (forks::working != 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -78,7 +79,7 @@ void at_exit() {
 
 }  // namespace
 
-// Counts while Python's lock is held: a fork, which holds it, finds each thread before its work or within.
+// Counts while Python's lock is held: as a fork holds the lock, it finds each thread either before or inside its work.
 Unlocked::Unlocked() {
     if (forks::torn)
         throw Error("this process was forked beside a thread that draws or has drawn, and would wait for threads "

@@ -1,4 +1,4 @@
-// unlocked.h -- work in the core while other threads of Python run; what a fork, and the end of Python, make of it.
+// unlocked.h -- releases Python's lock during work in the core, and handles forks and the exit of Python.
 #pragma once
 #include <nanobind/nanobind.h>
 
@@ -6,8 +6,8 @@
 
 namespace dg::bind {
 
-/// A scope of work without Python's lock; use it instead of nanobind::gil_scoped_release. Throws dg::Error where
-/// a fork has torn the core (math/forks.h).
+/// A scope without Python's lock; use it instead of nanobind::gil_scoped_release. Throws dg::Error if a fork during
+/// work has made the core unusable (math/forks.h).
 class Unlocked {
   public:
     Unlocked();
@@ -19,14 +19,14 @@ class Unlocked {
     PyThreadState* thread_;
 };
 
-/// Whether Python is about to end.
+/// Whether Python is exiting.
 bool is_ending();
-/// Whether Python is about to end in another thread than this one: what it draws stops. The thread in which
-/// Python ends may draw, in functions that it calls at its exit.
+/// Whether Python is exiting in another thread, so that rendering in this thread stops. The exiting thread may render
+/// in its exit handlers.
 bool is_ending_beside(std::thread::id thread);
 
-/// Sends the threads of oneTBB home before a fork, so that the child may start its own; and waits for
-/// daemon threads before Python ends, which would end them in the middle of C++. Called once.
+/// Registers handlers, once: ends oneTBB's threads before a fork, so that the child may start new threads, and waits
+/// for daemon threads before Python exits, which would kill them inside C++ code.
 void watch_process();
 
 }  // namespace dg::bind
