@@ -10,7 +10,7 @@
 namespace dg {
 namespace {
 
-// Largest rotation between two keys, in half turns.
+// Steps per key, where a motion rotates by at most half a turn from key to key, and steps per turn of a spin.
 constexpr int kStepsPerKey = 8, kStepsPerTurn = 16;
 // Meshes with more steps are bounded as a whole: each triangle gets the bounds of the mesh over all times.
 constexpr std::size_t kMostSteps = 512;

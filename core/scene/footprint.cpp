@@ -6,7 +6,7 @@
 namespace dg {
 namespace {
 
-// Limit of a footprint's length on the surface, relative to the width of the cone.
+// Lower bound of the cosine, which limits the length of a footprint on the surface.
 constexpr float kSmallestCosine = 1e-3f;
 
 Vec3f world_edge(const InstanceRecord& r, const Placement& place, std::uint32_t from,

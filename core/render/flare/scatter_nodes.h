@@ -4,9 +4,9 @@
 // The scattering lobes of a path, and the front where it enters, blur light on the film (optics/stray/scatter_blur.h)
 // with a profile that falls as a power r^slope of the distance from its center. A kernel with a variance of c times the
 // variance of the blur, which grows as r^2, changes such a profile by the fraction c slope'^2 / 2, with slope' =
-// slope + 2, wherever the power law holds. c is chosen for a small fraction, and limits the kernel at the edges of the
-// barrel's smooth light. For the narrow peak of a fine polish, or where lens parts have a sharp image on the film, the
-// kernel is below the node spacing, and the path is splatted to pixels (ray_on_film.h).
+// slope + 2, wherever the power law holds. The kernel of a path has this variance for a small c, limited to the width
+// that the edges of the barrel's smooth light allow. For the narrow peak of a fine polish, or where lens parts have a
+// sharp image on the film, the kernel is below the node spacing, and the path is splatted to pixels (ray_on_film.h).
 #pragma once
 #include <array>
 #include <memory>
