@@ -32,8 +32,8 @@ from daguerre.cli.demo import write_scene
 from daguerre.cluster import task as on_worker
 from daguerre.cluster.address import connected
 from daguerre.cluster.answers import Sums, answer_of, head_line, packed_sums
-from daguerre.cluster.crew import Crew
 from daguerre.cluster.opened import opened
+from daguerre.cluster.pool import WorkerPool
 from daguerre.cluster.work import work_of
 from daguerre.rendering.session import Session
 
@@ -69,11 +69,11 @@ def local(rounds: int = 3) -> dict[str, float]:
     scene, camera = scene_and_camera()
     settings = dg.RenderSettings.of(resolution=(720, 480), spp=64, threads=2)
     one, two = [], []
-    with opened("local:2") as crew:
+    with opened("local:2") as pool:
         for warm in (True, *[False] * rounds):
             sessions = [Session(scene, camera, settings=settings) for _ in range(2)]
             alone = drawn_s(sessions[0], here(sessions[0], (0, 64), None))
-            many = drawn_s(sessions[1], work_of(crew)(sessions[1], (0, 64), None, None))
+            many = drawn_s(sessions[1], work_of(pool)(sessions[1], (0, 64), None, None))
             if not warm:
                 one.append(alone)
                 two.append(many)
@@ -85,9 +85,9 @@ def start() -> dict[str, float]:
     scene, camera = scene_and_camera()
     session = Session(scene, camera, resolution=(240, 160), spp=2)
     began = time.monotonic()
-    with opened("local:2") as crew:
+    with opened("local:2") as pool:
         reached = time.monotonic() - began
-        work: Any = work_of(crew)(session, (0, 2), None, None)
+        work: Any = work_of(pool)(session, (0, 2), None, None)
         while not session.ranges:
             work.prepare(1.0)
             work.draw(lambda fraction: True)
@@ -260,17 +260,17 @@ def simulated(size: tuple[int, int], count: int) -> dict[str, float]:
     """The real client against fake workers for a while."""
     session, data = recorded(size)
     fake = FakeClient(count, data)
-    crew = Crew(fake)
-    crew.workers.wait()
-    crew.per_second = 1 / SAMPLE_S
-    work: Any = work_of(crew)(session, (0, 1 << 20), None, None)
+    pool = WorkerPool(fake)
+    pool.workers.wait()
+    pool.per_second = 1 / SAMPLE_S
+    work: Any = work_of(pool)(session, (0, 1 << 20), None, None)
     began, cpu, taken = time.monotonic(), time.process_time(), 0
     late = 0
     while time.monotonic() - began < LASTS_S:
         if work.prepare(1.0):
             taken += work._arrived is not None
             work.draw(lambda fraction: True)
-        late = max(late, sum(one.landed for one in crew.flights))
+        late = max(late, sum(one.done for one in pool.submissions))
     wall = time.monotonic() - began
     return {
         "workers": count,

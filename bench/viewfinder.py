@@ -19,7 +19,7 @@ At 480 x 270 with ghosts, while a mouse drags the picture until 100 turns have s
 * ghosts: time from one picture of a turn to that of the next; CPU time for each, of the server and
   of the browser; how many pictures had a layer of live ghosts.
 
-Then the time in which a new wish ends a render or a set-up, and the bytes of the page without
+Then the time in which a new request ends a render or a set-up, and the bytes of the page without
 photographs.
 """
 
@@ -243,7 +243,7 @@ def streamed(server: Any, page: Browser, seconds: float = 4.0) -> float:
 
 
 def cancelled(scene: dg.Scene, camera: dg.Camera) -> list[float]:
-    """Times from a wish to the end of the work before it, in a render and in set-ups, ms."""
+    """Times from a request to the end of the work before it, in a render and in set-ups, ms."""
     found = []
 
     def run(token: CancelToken, work: Callable[[], object]) -> None:

@@ -19,7 +19,7 @@ import daguerre as dg
 from daguerre import cli
 from daguerre.cluster import task as on_worker
 from daguerre.cluster.address import connected
-from daguerre.cluster.crew import Crew
+from daguerre.cluster.pool import WorkerPool
 from daguerre.cluster.work import work_of
 from daguerre.cluster.workers import reached
 from daguerre.errors import InputError
@@ -49,11 +49,11 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write_scene(tmp_path_factory.mktemp("scene") / "scene.glb")
 
 
-def drawn(crew: Crew, session: Session) -> dg.Frame:
-    """Frame of a session that a crew draws."""
-    crew.workers.wait()
+def drawn(pool: WorkerPool, session: Session) -> dg.Frame:
+    """Frame of a session that a pool draws."""
+    pool.workers.wait()
     sampling = session.settings.sampling
-    work = work_of(crew)(session, (0, sampling.most), sampling.noise, None)
+    work = work_of(pool)(session, (0, sampling.most), sampling.noise, None)
     assert Loop(session, work, Checkpoint(None), Reporter(), Control()).run()
     return session.frame()
 
@@ -73,7 +73,7 @@ def test_the_bits_are_those_of_one_machine(client: Any, file: Path, given: dict[
     camera = scene.camera().with_(lens=LENS, shutter_type="electronic")
     settings = dg.RenderSettings.of(resolution=(48, 32), **given)
     alone = dg.render(scene, camera, settings=settings)
-    frame = drawn(Crew(client), Session(scene, camera, settings=settings))
+    frame = drawn(WorkerPool(client), Session(scene, camera, settings=settings))
     assert np.array_equal(frame.rgb, alone.rgb)
     assert np.array_equal(frame.variance, alone.variance, equal_nan=True)
     assert frame.aovs.keys() == alone.aovs.keys()
@@ -82,22 +82,22 @@ def test_the_bits_are_those_of_one_machine(client: Any, file: Path, given: dict[
 
 
 def test_a_scene_travels_once_to_each_worker(client: Any, file: Path) -> None:
-    crew, scene = Crew(client), dg.load(file)
+    pool, scene = WorkerPool(client), dg.load(file)
     scene.node_positions["only of this test"] = np.zeros(3)
     sent: list[str] = []
     run = client.run
-    crew.client = type("Counting", (), {"__getattr__": lambda self, name: getattr(client, name)})()
+    pool.client = type("Counting", (), {"__getattr__": lambda self, name: getattr(client, name)})()
 
     def counted(function: Any, *given: Any, **more: Any) -> Any:
         if function is on_worker.keep:
             sent.extend(f"{given[0]} {one}" for one in more["workers"])
         return run(function, *given, **more)
 
-    crew.client.run = counted
+    pool.client.run = counted
     for seed in (1, 2):
         session = Session(scene, LENS and scene.camera(), resolution=(24, 16), spp=8, seed=seed)
-        drawn(crew, session)
-    name = crew.values.keep(scene)
+        drawn(pool, session)
+    name = pool.values.keep(scene)
     of_scene = [one for one in sent if one.startswith(name)]
     assert 1 <= len(of_scene) == len(set(of_scene)) <= 2
 
@@ -111,7 +111,7 @@ def test_a_killed_worker_costs_nothing(client: Any, file: Path) -> None:
     victim = pids[sorted(pids)[0]]
     timer = threading.Timer(0.7, os.kill, (victim, signal.SIGKILL))
     timer.start()
-    frame = drawn(Crew(client, tell=told.append), session)
+    frame = drawn(WorkerPool(client, tell=told.append), session)
     timer.join()
     assert np.array_equal(frame.rgb, alone.rgb)
     end = time.monotonic() + 30
@@ -153,7 +153,7 @@ def test_a_task_that_fails_everywhere_is_said(
     scene = dg.load(file)
     session = Session(scene, scene.camera(), resolution=(24, 16), spp=8)
     with pytest.raises(InputError, match=r"cluster: samples \d+:\d+ failed on .*No space left"):
-        drawn(Crew(client), session)
+        drawn(WorkerPool(client), session)
 
 
 def test_a_worker_of_another_build_is_refused_by_name(client: Any, file: Path) -> None:
@@ -161,9 +161,9 @@ def test_a_worker_of_another_build_is_refused_by_name(client: Any, file: Path) -
     session = Session(scene, scene.camera(), resolution=(24, 16), spp=8)
     session.key["build"] = "1.2.3 of another machine"
     with pytest.raises(InputError, match=r"build: wanted the same as the client's, 1\.2\.3"):
-        drawn(Crew(client), session)
+        drawn(WorkerPool(client), session)
     session.clear()
-    drawn(Crew(client, mixed=True), session)
+    drawn(WorkerPool(client, mixed=True), session)
 
 
 @pytest.mark.parametrize(

@@ -113,11 +113,11 @@ class _Viewfinder:
 
     async def _begin(self, rooms: Any, stage: Any, dials: Any, folder: Path) -> None:
         self._hub = rooms.Hub(stage, dials(), ["scene.glb"], asyncio.get_running_loop(), folder)
-        self._guest = self._hub.join(_Page())
+        self._client = self._hub.join(_Page())
 
     def hear(self, text: str) -> None:
         """Lets the hub act on a message."""
-        self._loop.run_until_complete(self._hub.hear(self._guest, text))
+        self._loop.run_until_complete(self._hub.hear(self._client, text))
 
 
 @lru_cache

@@ -11,9 +11,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from daguerre.viewfinder.access import Access
+from daguerre.viewfinder.clients import Client
 from daguerre.viewfinder.dials import Dials
-from daguerre.viewfinder.door import Door
-from daguerre.viewfinder.guests import Guest
 from daguerre.viewfinder.hub import Hub
 from daguerre.viewfinder.server import free_socket, serve
 from daguerre.viewfinder.stage import Stage
@@ -37,8 +37,8 @@ class Live:
 
     def turn(self, changes: Mapping[str, str | None]) -> None:
         """Turns dials as the page that turns does."""
-        guest = Guest(_Nowhere(), turns=True)
-        work = self.hub.hear(guest, json.dumps({"turn": changes}))
+        client = Client(_Nowhere(), turns=True)
+        work = self.hub.hear(client, json.dumps({"turn": changes}))
         asyncio.run_coroutine_threadsafe(work, self.loop).result(30)
 
 
@@ -81,7 +81,7 @@ def live(
     def run() -> None:
         nonlocal task
         asyncio.set_event_loop(loop)
-        task = loop.create_task(serve(sock, Door.at("127.0.0.1", port, TOKEN, also), hub_of))
+        task = loop.create_task(serve(sock, Access.at("127.0.0.1", port, TOKEN, also), hub_of))
         with contextlib.suppress(asyncio.CancelledError):
             loop.run_until_complete(task)
         loop.run_until_complete(loop.shutdown_default_executor())

@@ -16,14 +16,14 @@ from daguerre import lenses
 from daguerre.frame.frame import Frame
 from daguerre.viewfinder import image, tint
 from daguerre.viewfinder.dials import Dials, texts_of_words
-from daguerre.viewfinder.drawn import Drawn, Wish
+from daguerre.viewfinder.drawn import Drawn, PictureRequest
 from daguerre.viewfinder.false_colour import false_colour
 from daguerre.viewfinder.readings import limits_of, readings_of
 from daguerre.viewfinder.stage import Stage
 
 from .chromium import Browser, program
 from .live import Live, live
-from .live import page as guest
+from .live import page as page_of
 from .test_page import shows
 from .test_painter import Seen, scene
 
@@ -42,11 +42,11 @@ def stage() -> Stage:
 
 
 def drawn(stage: Stage, dials: Dials, beside: dict[str, str]) -> list[Drawn]:
-    """Pictures of a wish with another one beside it."""
+    """Pictures of a request with another one beside it."""
     seen = Seen(stage)
     try:
-        wish = Wish(1, stage, dials, stage.shot(dials), beside=beside)
-        seen.painter.wish(wish)
+        request = PictureRequest(1, stage, dials, stage.shot(dials), beside=beside)
+        seen.painter.request(request)
         return seen.until_rest(1)
     finally:
         seen.painter.close()
@@ -132,9 +132,11 @@ def test_brightness_turns_both_pictures_without_new_samples(stage: Stage) -> Non
     brighter = dials.turned({"iso": "200"})
     seen = Seen(stage)
     try:
-        seen.painter.wish(Wish(1, stage, dials, stage.shot(dials), beside=beside))
+        seen.painter.request(PictureRequest(1, stage, dials, stage.shot(dials), beside=beside))
         seen.until_rest(1)
-        seen.painter.wish(Wish(2, stage, brighter, stage.shot(brighter), beside=beside))
+        seen.painter.request(
+            PictureRequest(2, stage, brighter, stage.shot(brighter), beside=beside)
+        )
         pictures = seen.until_rest(2)
     finally:
         seen.painter.close()
@@ -207,9 +209,11 @@ def test_a_side_without_a_tint_says_why(stage: Stage) -> None:
 def test_a_wish_for_another_picture_beside_shows_other_light(stage: Stage) -> None:
     dials = Dials()
     shot = stage.shot(dials)
-    wishes = [Wish(1, stage, dials, shot, beside=one) for one in (None, {"f_stop": "8"})]
-    assert wishes[0].is_lit_as(wishes[0])
-    assert not wishes[0].is_lit_as(wishes[1])
+    requests = [
+        PictureRequest(1, stage, dials, shot, beside=one) for one in (None, {"f_stop": "8"})
+    ]
+    assert requests[0].is_lit_as(requests[0])
+    assert not requests[0].is_lit_as(requests[1])
 
 
 # The server
@@ -223,7 +227,7 @@ def server(stage: Stage) -> Iterator[Live]:
 
 
 def test_the_picture_at_rest_has_both_at_full_size(server: Live) -> None:
-    with guest(server) as one:
+    with page_of(server) as one:
         one.until_rest(0)
         command = one.state["command"]
         one.send(show={"beside": {"lens": SLOWER}})
@@ -244,7 +248,7 @@ def test_the_picture_at_rest_has_both_at_full_size(server: Live) -> None:
 
 
 def test_values_are_those_of_the_side_under_the_pointer(server: Live) -> None:
-    with guest(server) as one:
+    with page_of(server) as one:
         one.until_rest(0)
         one.send(show={"beside": {"f_stop": "8"}})
         one.until_rest(1)
@@ -273,7 +277,7 @@ def test_values_are_those_of_the_side_under_the_pointer(server: Live) -> None:
     ],
 )
 def test_others_are_refused(server: Live, beside: Any, told: str) -> None:
-    with guest(server) as one:
+    with page_of(server) as one:
         one.send(show={"beside": beside})
         while not one.refused:
             one.step()
@@ -282,7 +286,7 @@ def test_others_are_refused(server: Live, beside: Any, told: str) -> None:
 
 
 def test_models_and_a_picture_beside_exclude_each_other(server: Live) -> None:
-    with guest(server) as one:
+    with page_of(server) as one:
         one.send(show={"models": True, "beside": {"f_stop": "4"}})
         while not one.refused:
             one.step()
@@ -291,7 +295,7 @@ def test_models_and_a_picture_beside_exclude_each_other(server: Live) -> None:
 
 def test_models_end_a_picture_beside_and_it_ends_them(server: Live) -> None:
     beside = {"f_stop": "4"}
-    with guest(server) as one:
+    with page_of(server) as one:
         one.until_rest(0)
         for change, models, other in (
             ({"beside": beside}, False, beside),

@@ -97,13 +97,13 @@ def test_a_turn_of_brightness_develops_the_picture_that_is_there(
     seen: Seen, drawn: list[Any], start: dict[str, str], turn: dict[str, str]
 ) -> None:
     dials = Dials().turned(start)
-    seen.wish(1, dials)
+    seen.request(1, dials)
     seen.until_rest(1)
     drawn.clear()
     turned = dials.turned(turn)
-    seen.wish(2, turned)
+    seen.request(2, turned)
     first = seen.pictures.get(timeout=60)
-    assert (first.wish.number, first.rests, drawn) == (2, True, [])
+    assert (first.request.number, first.rests, drawn) == (2, True, [])
     seen.pictures.put(first)
     check(seen, 2, turned)
 
@@ -114,11 +114,11 @@ def test_a_turn_of_brightness_develops_the_picture_that_is_there(
     ids=lambda one: next(iter(one)),
 )
 def test_other_turns_draw(seen: Seen, drawn: list[Any], turn: dict[str, str]) -> None:
-    seen.wish(1)
+    seen.request(1)
     seen.until_rest(1)
     drawn.clear()
     dials = Dials().turned(turn)
-    seen.wish(2, dials)
+    seen.request(2, dials)
     check(seen, 2, dials)
     assert drawn
 
@@ -130,13 +130,13 @@ def test_a_turn_of_brightness_while_samples_are_drawn_ends_none(
     seen = Seen(stage)
     try:
         dials = Dials().turned({"exposure": "manual"})
-        seen.wish(1, dials)
+        seen.request(1, dials)
         while seen.pictures.get(timeout=60).samples < 4:
             pass
         for number in range(2, 8):
             dials = dials.turned({"iso": str(100 * number)})
-            seen.wish(number, dials)
-            while (picture := seen.pictures.get(timeout=60)).wish.number < number:
+            seen.request(number, dials)
+            while (picture := seen.pictures.get(timeout=60)).request.number < number:
                 pass
             assert picture.samples >= 4
             assert picture.frame.metadata["isoSpeed"] == 100 * number
@@ -151,10 +151,10 @@ def test_a_turn_of_brightness_while_samples_are_drawn_ends_none(
 
 def test_panels_are_developed_anew(seen: Seen, drawn: list[Any]) -> None:
     dials = Dials().turned({"lens": "double-gauss-50mm-f2"})
-    seen.wish(1, dials, models=True)
+    seen.request(1, dials, models=True)
     before = seen.until_rest(1)[-1]
     drawn.clear()
-    seen.wish(2, dials.turned({"iso": "400"}), models=True)
+    seen.request(2, dials.turned({"iso": "400"}), models=True)
     after = seen.until_rest(2)[-1]
     assert drawn == []
     for old, new in zip(before.panels, after.panels, strict=True):

@@ -44,7 +44,7 @@ def drawn(stage: Stage, dials: Dials) -> Drawn:
     """The picture at rest."""
     seen = Seen(stage)
     try:
-        seen.wish(1, dials)
+        seen.request(1, dials)
         return seen.until_rest(1)[-1]
     finally:
         seen.painter.close()
@@ -221,7 +221,7 @@ def test_pictures_on_the_way_do_not_wait_for_the_meter() -> None:
     before = drawn(stage, dials).shot.camera.iso
     seen = Seen(stage)
     try:
-        seen.wish(1, dials.turned({"place.position": "0,0.3,2"}))
+        seen.request(1, dials.turned({"place.position": "0,0.3,2"}))
         *quick, last = seen.until_rest(1)
     finally:
         seen.painter.close()
@@ -245,7 +245,7 @@ def test_a_spot_is_a_pixel_of_the_whole_picture_also_in_small_ones() -> None:
     stage.settings = stage.settings.with_(resolution=(480, 320), spp=1)
     seen = Seen(stage)
     try:
-        seen.wish(1, Dials().turned({"meter": "spot:400,300"}))
+        seen.request(1, Dials().turned({"meter": "spot:400,300"}))
         over = [readings_of(one)["meter"]["over"] for one in seen.until_rest(1)]
     finally:
         seen.painter.close()

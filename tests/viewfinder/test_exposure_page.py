@@ -129,7 +129,7 @@ def test_rings_that_the_meter_turns_are_marked(
 
 
 def test_a_page_that_watches_cannot_turn_the_dial(camera: Browser, stopped_down: Live) -> None:
-    stopped_down.hub._guests[0].turns = False
+    stopped_down.hub._clients[0].turns = False
     camera.run("document.querySelector('#exposure [value=A]').click()")
     error = "document.getElementById('error')"
     assert camera.until(f"!{error}.hidden && {error}.textContent").startswith("view: read-only")

@@ -140,7 +140,7 @@ def rests(one: Page, server: Live) -> NDArray[np.float32]:
     one.until_rest(server.hub.number)
     drawn = server.hub.picture
     assert drawn is not None
-    assert drawn.wish.number == server.hub.number
+    assert drawn.request.number == server.hub.number
     return np.array(drawn.frame.rgb)
 
 

@@ -19,7 +19,7 @@ from daguerre.rendering.live_ghosts import LiveGhosts
 from daguerre.rendering.session import Session
 from daguerre.viewfinder import ghosts
 from daguerre.viewfinder.dials import Dials
-from daguerre.viewfinder.drawn import Drawn, Wish
+from daguerre.viewfinder.drawn import Drawn, PictureRequest
 from daguerre.viewfinder.ghosts import Layers, resized
 from daguerre.viewfinder.stage import Stage
 from daguerre.viewfinder.work import Work
@@ -64,16 +64,18 @@ def stage_of(
 
 
 def drawn_of(stage: Stage, number: int = 0, **turns: str) -> list[Drawn]:
-    """Pictures of a wish until it rests."""
+    """Pictures of a request until it rests."""
     dials = Dials().turned(turns)
-    return list(Work(Wish(number, stage, dials, stage.shot(dials))).pictures(lambda step: step()))
+    return list(
+        Work(PictureRequest(number, stage, dials, stage.shot(dials))).pictures(lambda step: step())
+    )
 
 
 def first_of(stage: Stage, beside: dict[str, str] | None = None, **turns: str) -> Drawn:
-    """First picture of a wish."""
+    """First picture of a request."""
     dials = Dials().turned(turns)
-    wish = Wish(0, stage, dials, stage.shot(dials), beside=beside)
-    return next(Work(wish).pictures(lambda step: step()))
+    request = PictureRequest(0, stage, dials, stage.shot(dials), beside=beside)
+    return next(Work(request).pictures(lambda step: step()))
 
 
 def blocks(light: NDArray[np.float32], size: int = 8) -> NDArray[np.float32]:
@@ -184,12 +186,12 @@ def draws(monkeypatch: pytest.MonkeyPatch) -> list[Session]:
 def test_pictures_of_a_wish_share_a_layer_and_brightness_keeps_it(draws: list[Session]) -> None:
     stage = stage_of(sunny(), (480, 270))
     dials = Dials().turned({"exposure": "manual", "iso": "100"})
-    work = Work(Wish(0, stage, dials, stage.shot(dials)))
+    work = Work(PictureRequest(0, stage, dials, stage.shot(dials)))
     pictures = work.pictures(lambda step: step())
     one = next(pictures)
     assert one.sharp is not None
     brighter = dials.turned({"iso": "200"})
-    assert work.expose(Wish(1, stage, brighter, stage.shot(brighter)))
+    assert work.expose(PictureRequest(1, stage, brighter, stage.shot(brighter)))
     anew = work.drawn
     assert anew is not None
     assert anew.sharp is not None
@@ -208,9 +210,9 @@ def test_turning_ghosts_on_and_off_draws_anew(size: tuple[int, int]) -> None:
     stage = stage_of(sunny(), size, lit=False)
     on, off = Dials().turned({"flare": "auto"}), Dials()
     for old, new in itertools.permutations((on, off)):
-        work = Work(Wish(0, stage, old, stage.shot(old)))
+        work = Work(PictureRequest(0, stage, old, stage.shot(old)))
         for _ in work.pictures(lambda step: step()):
-            assert not work.expose(Wish(1, stage, new, stage.shot(new)))
+            assert not work.expose(PictureRequest(1, stage, new, stage.shot(new)))
 
 
 def test_without_ghosts_no_layer_is_drawn(draws: list[Session]) -> None:

@@ -19,9 +19,9 @@ from PIL import Image
 
 import daguerre as dg
 from daguerre import cli
+from daguerre.viewfinder.clients import Client
 from daguerre.viewfinder.dials import Dials
 from daguerre.viewfinder.drawn import Drawn
-from daguerre.viewfinder.guests import Guest
 from daguerre.viewfinder.history import PAUSE_S
 from daguerre.viewfinder.opening import opened
 from daguerre.viewfinder.stage import Stage
@@ -254,11 +254,11 @@ def test_a_ring_finds_back_while_a_slow_server_refuses_something_else(
 ) -> None:
     hear = server.hub.hear
 
-    async def slow(guest: Guest, text: str | bytes) -> None:
+    async def slow(client: Client, text: str | bytes) -> None:
         if b"turn" in (text if isinstance(text, bytes) else text.encode()):
-            await guest.tell({"refused": "planted"})
+            await client.tell({"refused": "planted"})
             await asyncio.sleep(0.4)
-        await hear(guest, text)
+        await hear(client, text)
 
     monkeypatch.setattr(server.hub, "hear", slow)
     shown = command_of(page)

@@ -1,4 +1,4 @@
-"""The painter: small pictures first, the newest wish wins, and the last picture is the render."""
+"""The painter: small pictures first, the newest request wins, the last picture is the render."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 import daguerre as dg
 from daguerre.viewfinder import painter, work
 from daguerre.viewfinder.dials import Dials
-from daguerre.viewfinder.drawn import Drawn, Wish
+from daguerre.viewfinder.drawn import Drawn, PictureRequest
 from daguerre.viewfinder.image import image_of
 from daguerre.viewfinder.painter import Painter
 from daguerre.viewfinder.rungs import MODELS
@@ -46,21 +46,23 @@ class Seen:
 
     def __init__(self, stage: Stage) -> None:
         self.pictures: queue.Queue[Drawn] = queue.Queue()
-        self.failures: queue.Queue[tuple[Wish, Exception]] = queue.Queue()
+        self.failures: queue.Queue[tuple[PictureRequest, Exception]] = queue.Queue()
         self.stage = stage
         self.painter = Painter(self.pictures.put, lambda *one: self.failures.put(one))
 
-    def wish(self, number: int, dials: Dials | None = None, *, models: bool = False) -> None:
+    def request(self, number: int, dials: Dials | None = None, *, models: bool = False) -> None:
         """Asks for a picture."""
         dials = dials or Dials()
-        self.painter.wish(Wish(number, self.stage, dials, self.stage.shot(dials), models))
+        self.painter.request(
+            PictureRequest(number, self.stage, dials, self.stage.shot(dials), models)
+        )
 
     def until_rest(self, number: int) -> list[Drawn]:
-        """Pictures until that at rest of a wish."""
+        """Pictures until that at rest of a request."""
         found = []
         while True:
             found.append(self.pictures.get(timeout=60))
-            if found[-1].rests and found[-1].wish.number == number:
+            if found[-1].rests and found[-1].request.number == number:
                 return found
 
 
@@ -72,7 +74,7 @@ def seen(stage: Stage) -> Iterator[Seen]:
 
 
 def test_pictures_grow_until_they_rest(seen: Seen) -> None:
-    seen.wish(1)
+    seen.request(1)
     pictures = seen.until_rest(1)
     widths = [drawn.frame.width for drawn in pictures]
     samples = [drawn.samples for drawn in pictures]
@@ -96,7 +98,7 @@ def test_pictures_grow_until_they_rest(seen: Seen) -> None:
 )
 def test_the_picture_at_rest_is_the_render(seen: Seen, stage: Stage, turns: Any) -> None:
     dials = Dials().turned(turns)
-    seen.wish(1, dials)
+    seen.request(1, dials)
     last = seen.until_rest(1)[-1]
     alone = dg.render(scene(), dials.camera(stage.camera), settings=dials.settings(stage.settings))
     assert np.array_equal(last.frame.rgb, alone.rgb)
@@ -104,9 +106,9 @@ def test_the_picture_at_rest_is_the_render(seen: Seen, stage: Stage, turns: Any)
 
 def test_the_newest_wish_wins(seen: Seen) -> None:
     for number in range(1, 40):
-        seen.wish(number, Dials().turned({"iso": str(100 + number)}))
+        seen.request(number, Dials().turned({"iso": str(100 + number)}))
         time.sleep(0.005)
-    numbers = [drawn.wish.number for drawn in seen.until_rest(39)]
+    numbers = [drawn.request.number for drawn in seen.until_rest(39)]
     assert numbers == sorted(numbers)
     assert seen.pictures.empty()
 
@@ -117,23 +119,23 @@ def test_while_a_hand_moves_the_next_wish_comes_before_a_better_picture(
     """The hand turns on when it sees a picture; work on better ones would delay the next."""
     monkeypatch.setattr(painter, "WAIT_S", 60.0)
     for number in (1, 2):
-        seen.wish(number, Dials().turned({"f_stop": str(4 + number)}))
-        while seen.pictures.get(timeout=60).wish.number != number:
+        seen.request(number, Dials().turned({"f_stop": str(4 + number)}))
+        while seen.pictures.get(timeout=60).request.number != number:
             pass
     time.sleep(0.5)
     assert seen.pictures.empty()
     monkeypatch.setattr(painter, "WAIT_S", 0.0)
-    seen.wish(3)
+    seen.request(3)
     seen.until_rest(3)
 
 
 def test_a_wish_that_cannot_be_is_a_failure_and_the_next_one_is_drawn(seen: Seen) -> None:
     wrong = Dials().turned({"lens": "double-gauss-50mm-f2", "f_stop": "0.5"})
-    seen.wish(1, wrong)
-    wish, error = seen.failures.get(timeout=60)
-    assert wish.number == 1
+    seen.request(1, wrong)
+    request, error = seen.failures.get(timeout=60)
+    assert request.number == 1
     assert "f_stop: wanted 2 or more" in str(error)
-    seen.wish(2)
+    seen.request(2)
     seen.until_rest(2)
 
 
@@ -146,16 +148,16 @@ def test_after_a_fault_of_any_kind_the_next_wish_is_drawn(
 
     with monkeypatch.context() as patch:
         patch.setattr(work, "Session", fails)
-        seen.wish(1)
+        seen.request(1)
         assert isinstance(seen.failures.get(timeout=60)[1], fault)
-    seen.wish(2)
+    seen.request(2)
     seen.until_rest(2)
 
 
 @pytest.mark.parametrize(("size", "kind"), [((240, 160), "rgb"), ((300, 160), "jpeg")])
 def test_small_pictures_go_as_they_are(seen: Seen, stage: Stage, size: Any, kind: str) -> None:
     stage.settings = stage.settings.with_(resolution=size, spp=4)
-    seen.wish(1)
+    seen.request(1)
     last = seen.until_rest(1)[-1]
     image = image_of(last)
     shown = last.frame.display(stage.tone)
@@ -170,7 +172,7 @@ def test_small_pictures_go_as_they_are(seen: Seen, stage: Stage, size: Any, kind
 
 def test_three_models_of_a_lens_side_by_side(seen: Seen, stage: Stage) -> None:
     dials = Dials().turned({"lens": "double-gauss-50mm-f2"})
-    seen.wish(1, dials, models=True)
+    seen.request(1, dials, models=True)
     last = seen.until_rest(1)[-1]
     assert [panel.name for panel in last.panels] == list(MODELS)
     assert last.samples == 8
@@ -181,9 +183,9 @@ def test_three_models_of_a_lens_side_by_side(seen: Seen, stage: Stage) -> None:
         assert np.array_equal(panel.frame.rgb, alone.rgb)
 
 
-def test_a_painter_at_rest_draws_nothing_until_the_next_wish(seen: Seen, stage: Stage) -> None:
+def test_a_painter_at_rest_draws_nothing_until_the_next_request(seen: Seen, stage: Stage) -> None:
     settings, stage.settings = stage.settings, stage.settings.with_(spp=1 << 20)
-    seen.wish(1)
+    seen.request(1)
     seen.pictures.get(timeout=60)
     seen.painter.rest()
     time.sleep(0.5)
@@ -192,14 +194,14 @@ def test_a_painter_at_rest_draws_nothing_until_the_next_wish(seen: Seen, stage: 
     time.sleep(work.LONGEST_S + 0.5)
     assert seen.pictures.empty()
     stage.settings = settings
-    seen.wish(2)
+    seen.request(2)
     seen.until_rest(2)
 
 
 def test_a_closed_painter_stops_at_once(stage: Stage) -> None:
     stage.settings = stage.settings.with_(spp=1 << 20)
     seen = Seen(stage)
-    seen.wish(1)
+    seen.request(1)
     seen.pictures.get(timeout=60)
     began = time.monotonic()
     seen.painter.close()

@@ -78,7 +78,7 @@ def sheets(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int, bool]]:
 
     def noted(self: hub.Hub, drawn: Drawn, *rest: Any, denoised: bool) -> Sheet:
         if drawn.whole:
-            found.append((drawn.wish.number, drawn.samples, denoised))
+            found.append((drawn.request.number, drawn.samples, denoised))
         return make(self, drawn, *rest, denoised=denoised)
 
     monkeypatch.setattr(hub.Hub, "_sheet_of", noted)
@@ -146,7 +146,7 @@ def test_previews_change_neither_histogram_nor_values(
     make = hub.Hub._sheet_of
 
     def noted(self: hub.Hub, drawn: Drawn, image: Any, show: Show, *, denoised: bool) -> Sheet:
-        if drawn.whole and drawn.wish.number == 1:
+        if drawn.whole and drawn.request.number == 1:
             histograms[denoised][drawn.samples] = image.histogram
         return make(self, drawn, image, show, denoised=denoised)
 

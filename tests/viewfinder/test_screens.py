@@ -16,7 +16,7 @@ from tests.faults.scene import write_scene
 
 from .chromium import Browser, browser, program
 from .live import TOKEN, Live, live
-from .live import page as guest
+from .live import page as page_of
 
 pytest.importorskip("websockets", reason="needs the extra view")
 pytest.importorskip("simplejpeg", reason="needs the extra view")
@@ -329,7 +329,7 @@ def test_a_barred_storage_bars_nothing(tmp_path: Path, server: Live) -> None:
 
 def test_a_page_that_watches_says_so(chromium: Browser, server: Live) -> None:
     chromium.open("about:blank")
-    with guest(server) as first:
+    with page_of(server) as first:
         first.step()
         page = shows(chromium, server, PHONE)
         text = page.until("!document.getElementById('watches').hidden && document.body.innerText")

@@ -20,7 +20,7 @@ import pytest
 import daguerre as dg
 from daguerre.viewfinder import hub
 from daguerre.viewfinder import server as serving
-from daguerre.viewfinder.server import FILES, MOST_GUESTS, PATIENCE_S
+from daguerre.viewfinder.server import FILES, MOST_CLIENTS, PATIENCE_S
 
 from .live import TOKEN, Live, Page, live, page
 from .test_painter import scene
@@ -197,19 +197,19 @@ def test_no_state_from_before_a_turn_follows_it(server: Live) -> None:
                 told.append(json.loads(message))
 
     async def tells_and_turns() -> int:
-        guest = server.hub.join(Line())
+        client = server.hub.join(Line())
         picture = server.hub.picture
         assert picture is not None
-        server.hub._report(picture.wish, "")  # has the state told
-        await server.hub.hear(guest, json.dumps({"turn": {"f_stop": "8"}}))
+        server.hub._report(picture.request, "")  # has the state told
+        await server.hub.hear(client, json.dumps({"turn": {"f_stop": "8"}}))
         number = server.hub.number
         await asyncio.sleep(0)
-        await server.hub.leave(guest)
+        await server.hub.leave(client)
         return number
 
     with page(server) as one:
         one.until_rest(0)
-    while server.hub._guests:
+    while server.hub._clients:
         time.sleep(0.01)
     number = asyncio.run_coroutine_threadsafe(tells_and_turns(), server.loop).result(30)
     answer = next(k for k, message in enumerate(told) if "heard" in message)
@@ -355,10 +355,10 @@ def test_messages_do_not_wait_for_each_other(server: Live, monkeypatch: pytest.M
     delays = []
     welcome = server.hub.welcome
 
-    async def spied(guest: Any) -> None:
-        sock = guest.line._connection.transport.get_extra_info("socket")
+    async def spied(client: Any) -> None:
+        sock = client.line._connection.transport.get_extra_info("socket")
         delays.append(not sock.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
-        await welcome(guest)
+        await welcome(client)
 
     monkeypatch.setattr(server.hub, "welcome", spied)
     with page(server) as one:
@@ -370,7 +370,7 @@ def test_pages_are_limited(server: Live) -> None:
     import contextlib
 
     with contextlib.ExitStack() as stack:
-        for _ in range(MOST_GUESTS):
+        for _ in range(MOST_CLIENTS):
             stack.enter_context(page(server)).until_rest(0)
         assert closed(server) == 4429
     with page(server) as one:
@@ -413,9 +413,9 @@ def test_a_page_that_is_stuck_does_not_hold_the_end(caplog: pytest.LogCaptureFix
             text = TOKEN.encode()  # masked by zeros
             line.sendall(bytes([0x81, 0x80 | len(text), 0, 0, 0, 0]) + text)
             begun = time.monotonic()
-            while not server.hub._guests and time.monotonic() - begun < 30:
+            while not server.hub._clients and time.monotonic() - begun < 30:
                 time.sleep(0.05)
-            assert server.hub._guests
+            assert server.hub._clients
             begun = time.monotonic()
         assert time.monotonic() - begun < 8  # 10 s by websockets' default
     assert not [one for one in caplog.records if one.levelname == "ERROR"]

@@ -38,7 +38,7 @@ def test_tev_gets_the_whole_picture(stage: Stage) -> None:  # noqa: F811
         line, _ = listening.accept()
         line.settimeout(30)
         seen = Seen(stage)
-        seen.wish(1)
+        seen.request(1)
         pictures = seen.until_rest(1)
         seen.painter.close()
         for drawn in pictures:

@@ -1,4 +1,4 @@
-"""Answers of workers, as bytes: sums with a key and a checksum, a wish for values, or a failure.
+"""Answers of workers, as bytes: sums with a key and a checksum, needed values, or a failure.
 
 Each begins with a line of JSON. Sums are the parts of a pass file (``daguerre.rendering.passes``)
 without its picture, which only the client makes, and without columns of zeros.
@@ -32,7 +32,7 @@ class Needs:
     names: list[str]
 
     def to_bytes(self) -> bytes:
-        """Packs the wish."""
+        """Packs the names of the values."""
         return head_line(needs=self.names, worker=self.worker)
 
 

@@ -10,7 +10,7 @@ from daguerre.errors import UsageError
 from daguerre.rendering.schedule import WorkOf
 
 from .address import WANTED, connected
-from .crew import Crew
+from .pool import WorkerPool
 from .work import work_of
 from .workers import Tell, is_client
 
@@ -18,7 +18,7 @@ from .workers import Tell, is_client
 @contextmanager
 def opened(
     cluster: object, *, insecure: bool = False, mixed: bool = False, tell: Tell = lambda text: None
-) -> Iterator[Crew]:
+) -> Iterator[WorkerPool]:
     """Opens a cluster and waits for its first worker.
 
     Args:
@@ -37,16 +37,16 @@ def opened(
         connected(cluster, insecure=insecure) if isinstance(cluster, str) else nullcontext(cluster)
     )
     with reached as client:
-        crew = Crew(client, mixed=mixed, tell=tell)
-        crew.workers.wait()
+        pool = WorkerPool(client, mixed=mixed, tell=tell)
+        pool.workers.wait()
         try:
-            yield crew
+            yield pool
         finally:
-            crew.close()
+            pool.close()
 
 
 @contextmanager
 def work_on(cluster: object) -> Iterator[WorkOf]:
     """Opens a cluster for one picture; see :func:`opened`."""
-    with opened(cluster) as crew:
-        yield work_of(crew)
+    with opened(cluster) as pool:
+        yield work_of(pool)

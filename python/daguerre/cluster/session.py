@@ -18,7 +18,7 @@ from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
 
-from .crew import Crew
+from .pool import WorkerPool
 from .work import ClusterParts, ClusterRange
 from .workers import is_client
 
@@ -60,8 +60,8 @@ class ClusterSession(Session):
         if not is_client(client):
             raise UsageError(f"client: wanted a distributed.Client, got {short(client)}")
         super().__init__(scene, camera, settings=settings, built=built, **keywords)
-        self._crew = Crew(client)
-        self._crew.workers.wait()
+        self._pool = WorkerPool(client)
+        self._pool.workers.wait()
 
     def draw(self, begin: int, end: int, progress: Progress | None = None) -> bool:
         """Has samples [begin, end) of every pixel drawn.
@@ -75,12 +75,12 @@ class ClusterSession(Session):
             False if stopped. The samples that arrived before are in the picture; see ``ranges``.
         """
         wanted = self._new_range(begin, end)
-        return self._work_off(ClusterRange(self, wanted, self._crew), progress)
+        return self._work_off(ClusterRange(self, wanted, self._pool), progress)
 
     def draw_round(self, until: int, progress: Progress | None = None) -> bool:
         """Has the parts of ``round`` up to ``until`` drawn; see ``Session.draw_round``."""
         self._planned_round()
-        return self._work_off(ClusterParts(self, until, self._crew), progress)
+        return self._work_off(ClusterParts(self, until, self._pool), progress)
 
     def _work_off(self, work: Work, progress: Progress | None) -> bool:
         try:
@@ -89,5 +89,5 @@ class ClusterSession(Session):
                 if progress is not None and not progress(work.done() / work.total()):
                     return False
         finally:
-            self._crew.drop_all()
+            self._pool.drop_all()
         return True

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from daguerre.rendering.ranges import Range, missing_ranges
 
-from .crew import Crew, GivenUp
+from .pool import GivenUp, WorkerPool
 from .task import Place, Task
 
 if TYPE_CHECKING:
@@ -38,12 +38,12 @@ class Spread:
     """Tasks of the picture under way, and of later pictures of its job.
 
     Args:
-        crew: Workers.
+        pool: Workers.
         job: The job; None: a single picture.
     """
 
-    def __init__(self, crew: Crew, job: Job | None = None) -> None:
-        self.crew, self.job = crew, job
+    def __init__(self, pool: WorkerPool, job: Job | None = None) -> None:
+        self.pool, self.job = pool, job
         self._now = 0  # number of the picture under way
         self._places: dict[int, Place] = {}
         self._homes: dict[int, str] = {}
@@ -51,7 +51,7 @@ class Spread:
     def open(self, session: Session) -> Place:
         """Place of the picture that begins now."""
         if self.job is None:
-            self.crew.drop_all()  # of a picture before that was stopped
+            self.pool.drop_all()  # of a picture before that was stopped
             self._homes.clear()
             shown = session.scene, session.camera, session.settings
             self._places = {0: self._kept(*shown, session.light_plan.piloted)}
@@ -59,7 +59,7 @@ class Spread:
         self._now = self.job.done
         for number in [n for n in self._places if n < self._now]:
             for name in astuple(self._places.pop(number)):
-                self.crew.values.forget(name)
+                self.pool.values.forget(name)
         return self._place(self._now, session)
 
     def piloted(self, picture: Picture) -> Plan | None:
@@ -68,15 +68,15 @@ class Spread:
         place, control = self._places.get(self.job.pictures.index(picture)), self.job.control
         while place is not None and not control.stops:
             try:
-                self.crew.look()
-                self.crew.serve()
+                self.pool.look()
+                self.pool.serve()
             except GivenUp:  # the picture's own work will find out
                 return None
-            flights = self.crew.flights_of(place)
-            for one in flights:
+            submissions = self.pool.submissions_of(place)
+            for one in submissions:
                 if one.has_sums:
-                    return self.crew.piloted(one)
-            if not flights or any(one.landed or self.crew.is_late(one) for one in flights):
+                    return self.pool.piloted(one)
+            if not submissions or any(one.done or self.pool.is_late(one) for one in submissions):
                 return None
             time.sleep(WAIT_S)
             control.poll()
@@ -94,8 +94,8 @@ class Spread:
         if room <= 0:
             return True
         free = self._free(wanted, known)
-        pending = Counter(one.home for one in self.crew.flights if not one.landed)
-        good = sorted(self.crew.workers.good)
+        pending = Counter(one.home for one in self.pool.submissions if not one.done)
+        good = sorted(self.pool.workers.good)
         for _ in range(room):
             worker = min(good, key=lambda one: pending[one], default="")
             number = self._choice(worker, free)
@@ -109,7 +109,7 @@ class Spread:
             place = self._place(number)
             several = len(free) > 1  # the last picture is everybody's
             home = worker if several and self._homes[number] == worker else ""
-            self.crew.begin(Task(place.scene, place.view, begin, end), home=home)
+            self.pool.begin(Task(place.scene, place.view, begin, end), home=home)
             pending[home] += 1
         return True
 
@@ -118,7 +118,7 @@ class Spread:
         yield self._now
         if self.job is None:
             return
-        ahead = PICTURES_AHEAD * max(1, len(self.crew.workers.good))
+        ahead = PICTURES_AHEAD * max(1, len(self.pool.workers.good))
         for number in range(self._now + 1, min(self._now + 1 + ahead, len(self.job.pictures))):
             if self.job.pictures[number].settings.sampling.noise is not None:
                 return  # adaptive sampling waits for its own sums
@@ -127,7 +127,7 @@ class Spread:
     def _free(self, wanted: Range, known: Sequence[Range]) -> dict[int, list[Range]]:
         """Samples that nobody draws, by the number of the picture."""
         taken = defaultdict(list)
-        for one in self.crew.flights:
+        for one in self.pool.submissions:
             taken[one.task.scene, one.task.view].append((one.task.begin, one.task.end))
         found = {}
         for number in self._numbers():
@@ -147,7 +147,7 @@ class Spread:
             if self._homes.get(number) == worker:
                 return number
         for number in unfinished:
-            if self._homes.get(number) not in self.crew.workers.good:  # without a worker
+            if self._homes.get(number) not in self.pool.workers.good:  # without a worker
                 self._homes[number] = worker
                 return number
         return unfinished[0] if unfinished else None
@@ -165,6 +165,6 @@ class Spread:
     def _kept(
         self, scene: Scene, camera: Camera, settings: RenderSettings, piloted: Plan | None
     ) -> Place:
-        """Place of a picture; the crew keeps its values."""
-        keep = self.crew.values.keep
+        """Place of a picture; the pool keeps its values."""
+        keep = self.pool.values.keep
         return Place(keep(scene), keep((camera, settings, piloted)))

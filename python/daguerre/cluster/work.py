@@ -11,7 +11,7 @@ from daguerre.rendering import adaptive, rounds
 from daguerre.rendering.ranges import join_ranges, show_ranges
 from daguerre.rendering.schedule import Range, Rounds, Work, WorkOf
 
-from .crew import TRIES, Crew, GivenUp
+from .pool import TRIES, GivenUp, WorkerPool
 from .sharing import Sharing
 from .spread import Spread
 from .task import Task
@@ -33,11 +33,15 @@ class ClusterRange(Range):
     """Samples [begin, end) of every pixel, drawn by a cluster."""
 
     def __init__(
-        self, session: Session, wanted: tuple[int, int], crew: Crew, spread: Spread | None = None
+        self,
+        session: Session,
+        wanted: tuple[int, int],
+        pool: WorkerPool,
+        spread: Spread | None = None,
     ) -> None:
         super().__init__(session, wanted)
-        self._spread = spread or Spread(crew)
-        self._sharing = Sharing(session, crew, self._spread.open(session))
+        self._spread = spread or Spread(pool)
+        self._sharing = Sharing(session, pool, self._spread.open(session))
         self._arrived: tuple[Task, Sums] | None = None
         self._drew = False
         self._given_up: dict[tuple[int, int], GivenUp] = {}
@@ -48,7 +52,7 @@ class ClusterRange(Range):
         if not missing:
             return 0.0
         free = self._fill()
-        if not free and not self._sharing.flights:  # all else is complete
+        if not free and not self._sharing.submissions:  # all else is complete
             raise self._failure()
         try:
             self._arrived = self._sharing.take()
@@ -100,9 +104,9 @@ class ClusterParts:
     They are added in their order, so that a checkpoint can say how far it got.
     """
 
-    def __init__(self, session: Session, until: int, crew: Crew) -> None:
+    def __init__(self, session: Session, until: int, pool: WorkerPool) -> None:
         self.session, self.until = session, until
-        self._sharing = Sharing(session, crew, Spread(crew).open(session))
+        self._sharing = Sharing(session, pool, Spread(pool).open(session))
         self._arrived: tuple[Task, Sums] | None = None
         self._plan: tuple[Any, str] | None = None
         self._begun = 0
@@ -151,8 +155,8 @@ class ClusterParts:
         sharing, now = self._sharing, self._round
         if self._plan is None or self._plan[0] is not now.count:
             if self._plan is not None:
-                sharing.crew.values.forget(self._plan[1])
-            self._plan = now.count, sharing.crew.values.keep((now.begin, now.count))
+                sharing.pool.values.forget(self._plan[1])
+            self._plan = now.count, sharing.pool.values.keep((now.begin, now.count))
             self._begun = now.drawn
         part = float(now.count.mean()) / adaptive.PARTS
         while self._begun < self.until and sharing.room() > 0:
@@ -166,10 +170,10 @@ class ClusterRounds(Rounds):
     """Adaptive sampling with rounds planned here and drawn by a cluster."""
 
     def __init__(
-        self, session: Session, noise: float, ceiling: int, judge: Judge | None, crew: Crew
+        self, session: Session, noise: float, ceiling: int, judge: Judge | None, pool: WorkerPool
     ) -> None:
         super().__init__(session, noise, ceiling, judge)
-        self._parts = ClusterParts(session, adaptive.PARTS, crew)
+        self._parts = ClusterParts(session, adaptive.PARTS, pool)
 
     def prepare(self, limit: float) -> float:
         """Plans a round, keeps workers busy, and waits a little for its next parts."""
@@ -186,14 +190,14 @@ class ClusterRounds(Rounds):
         return super().facts() | self._parts.facts()
 
 
-def work_of(crew: Crew, job: Job | None = None) -> WorkOf:
+def work_of(pool: WorkerPool, job: Job | None = None) -> WorkOf:
     """Makes ``daguerre.rendering.schedule.work_of`` for a cluster.
 
     Args:
-        crew: Workers.
+        pool: Workers.
         job: Job of the pictures; None: each picture alone.
     """
-    spread = Spread(crew, job)
+    spread = Spread(pool, job)
     if job is not None:
         job.piloted = spread.piloted
 
@@ -201,7 +205,7 @@ def work_of(crew: Crew, job: Job | None = None) -> WorkOf:
         session: Session, wanted: tuple[int, int], noise: float | None, judge: Judge | None = None
     ) -> Work:
         if noise is None:
-            return ClusterRange(session, wanted, crew, spread)
-        return ClusterRounds(session, noise, wanted[1], judge, crew)
+            return ClusterRange(session, wanted, pool, spread)
+        return ClusterRounds(session, noise, wanted[1], judge, pool)
 
     return made

@@ -15,7 +15,7 @@ from .stage import Stage
 
 
 @dataclass(frozen=True)
-class Wish:
+class PictureRequest:
     """A picture that a page waits for.
 
     Attributes:
@@ -34,12 +34,12 @@ class Wish:
     models: bool = False
     beside: Mapping[str, str] | None = None
 
-    def is_lit_as(self, other: Wish) -> bool:
-        """Whether the samples of another wish are certainly samples of this wish, too."""
+    def is_lit_as(self, other: PictureRequest) -> bool:
+        """Whether the samples of another request are certainly samples of this request, too."""
         same = self.shows_as(other) and self.shot.is_lit_as(other.shot)
         return same and self._is_lit and other._is_lit
 
-    def shows_as(self, other: Wish) -> bool:
+    def shows_as(self, other: PictureRequest) -> bool:
         """Whether it shows the same stage, with the same pictures beside each other."""
         return self.stage is other.stage and self.asks[1:] == other.asks[1:]
 
@@ -75,10 +75,10 @@ class Panel:
 
 @dataclass(frozen=True)
 class Drawn:
-    """A picture of a wish, with more samples or pixels to come until it rests.
+    """A picture of a request, with more samples or pixels to come until it rests.
 
     Attributes:
-        wish: The wish.
+        request: The request.
         shot: Scene, camera and settings, at the size of this picture.
         session: Session that drew the picture.
         frame: Linear values.
@@ -90,7 +90,7 @@ class Drawn:
         note: Why the second picture that was asked for is missing.
     """
 
-    wish: Wish
+    request: PictureRequest
     shot: Shot
     session: Session
     frame: Frame

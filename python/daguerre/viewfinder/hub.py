@@ -18,10 +18,10 @@ from daguerre.frame.frame import Frame
 from daguerre.rendering.denoise import denoise
 
 from . import lens_list
+from .clients import Client, Clients, Line
 from .dials import Dials, texts_of_words
-from .drawn import Drawn, Wish
+from .drawn import Drawn, PictureRequest
 from .glass import drawing_of
-from .guests import Guest, Guests, Line
 from .history import History, Steps
 from .image import Image, image_of
 from .messages import (
@@ -94,13 +94,13 @@ class Hub:
         self._read = -1
         self._sheet: Sheet | None = None
         self._sheets = 0
-        self._guests = Guests()
+        self._clients = Clients()
         self._tasks: set[asyncio.Task[None]] = set()
         self._shot = stage.shot(dials)
         self._previews = Previews()
         self._painter = Painter(self.publish, self._failed, self._ask_for_turn)
-        self._wish()
-        self._start(watch(stage.scene.path, self._guests))
+        self._request()
+        self._start(watch(stage.scene.path, self._clients))
 
     def close(self) -> None:
         """Ends the painter."""
@@ -111,32 +111,32 @@ class Hub:
         if self._tev is not None:
             self._tev.close()
 
-    def join(self, line: Line) -> Guest:
+    def join(self, line: Line) -> Client:
         """Lets a page in; the first one turns."""
-        return self._guests.join(line)
+        return self._clients.join(line)
 
-    async def leave(self, guest: Guest) -> None:
+    async def leave(self, client: Client) -> None:
         """Forgets a page; if it turned the dials, the next page does."""
-        if guest.turns:
+        if client.turns:
             self._steps.let_go(self._loop.time())
-        await self._guests.leave(guest)
+        await self._clients.leave(client)
 
-    async def welcome(self, guest: Guest) -> None:
+    async def welcome(self, client: Client) -> None:
         """Sends a page all that it shows at first."""
-        await guest.tell({"role": "turns" if guest.turns else "watches"})
-        await guest.tell({"open": self._opened()})
-        await guest.tell(self._state())
-        await guest.offer(self._sheet)
+        await client.tell({"role": "turns" if client.turns else "watches"})
+        await client.tell({"open": self._opened()})
+        await client.tell(self._state())
+        await client.offer(self._sheet)
 
-    async def hear(self, guest: Guest, text: str | bytes) -> None:
+    async def hear(self, client: Client, text: str | bytes) -> None:
         """Acts on a message of a page; answers a wrong message by the reason."""
         message = None
         try:
             message = parse(text)
-            await self._act(guest, message)
+            await self._act(client, message)
         except Exception as error:  # whatever it is, the page stays
             refused = {"refused": reason_of(error)}
-            await guest.tell(refused | {"heard": True} if isinstance(message, Change) else refused)
+            await client.tell(refused | {"heard": True} if isinstance(message, Change) else refused)
 
     @property
     def dials(self) -> Dials:
@@ -155,77 +155,77 @@ class Hub:
         """Newest picture; None: none is drawn yet."""
         return None if self._sheet is None else self._sheet.drawn
 
-    async def _act(self, guest: Guest, message: Message) -> None:
+    async def _act(self, client: Client, message: Message) -> None:
         match message:
             case Got(number):
-                if guest.busy == number:
-                    guest.busy = None
-                    await guest.offer(self._sheet)
+                if client.busy == number:
+                    client.busy = None
+                    await client.offer(self._sheet)
             case Probe():
                 sheet = self._sheet
                 value = None if sheet is None else await asyncio.to_thread(sheet.value, message)
-                await guest.tell({"value": value})
+                await client.tell({"value": value})
             case Section(x, y):
                 found = await asyncio.to_thread(self._newest("section").section, x, y)
-                await guest.tell({"section": found})
+                await client.tell({"section": found})
             case Drawing(name):
-                await guest.tell({"drawing": await asyncio.to_thread(drawing_of, name)})
+                await client.tell({"drawing": await asyncio.to_thread(drawing_of, name)})
             case Facts():
-                await guest.tell({"facts": await asyncio.to_thread(lens_list.facts)})
+                await client.tell({"facts": await asyncio.to_thread(lens_list.facts)})
             case Photograph(name):
-                await guest.tell({"photograph": lens_list.photograph(name)})
+                await client.tell({"photograph": lens_list.photograph(name)})
             case Find(words):
-                await guest.tell({"found": lens_list.found(words)})
-            case _ if not guest.turns:
+                await client.tell({"found": lens_list.found(words)})
+            case _ if not client.turns:
                 raise UsageError("view: read-only: another page controls the camera")
             case Turn(changes):
-                await self._turn({**self._kept(changes), **changes}, changes, guest=guest)
+                await self._turn({**self._kept(changes), **changes}, changes, client=client)
             case Draw(samples):
-                await self._turn({"spp": str(samples)}, guest=guest)
+                await self._turn({"spp": str(samples)}, client=client)
             case Undo():
-                await self._go_back(self._history.undone, "undo: nothing was turned", guest)
+                await self._go_back(self._history.undone, "undo: nothing was turned", client)
             case Redo():
-                await self._go_back(self._history.redone, "redo: nothing was undone", guest)
+                await self._go_back(self._history.redone, "redo: nothing was undone", client)
             case Hold(begins):
                 (self._steps.hold if begins else self._steps.let_go)(self._loop.time())
             case Save(kind):
                 path = await asyncio.to_thread(self._save, kind)
-                await self._guests.tell({"saved": str(path)})
+                await self._clients.tell({"saved": str(path)})
             case ShowOtherwise(changes):
-                await self._show_otherwise(self._show.changed(changes), guest)
+                await self._show_otherwise(self._show.changed(changes), client)
             case Reload():
                 self._stage = await asyncio.to_thread(self._stage.reload)
-                await self._go(self._history, guest)
-                await self._guests.tell({"open": self._opened()})
+                await self._go(self._history, client)
+                await self._clients.tell({"open": self._opened()})
 
     async def _turn(
         self,
         changes: Mapping[str, str | None],
         names: Collection[str] | None = None,
         *,
-        guest: Guest,
+        client: Client,
     ) -> None:
         """Turns dials; ``names`` are the dials that tell undo steps apart."""
         dials = self.dials.turned(changes)
         step = self._steps.of_turn(names or changes, self._loop.time())
-        await self._go(self._history.turned(dials, step), guest)
+        await self._go(self._history.turned(dials, step), client)
 
-    async def _go_back(self, history: History | None, nothing: str, guest: Guest) -> None:
+    async def _go_back(self, history: History | None, nothing: str, client: Client) -> None:
         """Undoes or redoes a step; forgets a step that cannot be drawn any more."""
         if history is None:
             raise UsageError(nothing)
         try:
-            await self._go(history, guest)
+            await self._go(history, client)
         except DaguerreError:
             self._history = self._history.without(history.now)
             raise
 
-    async def _go(self, history: History, guest: Guest) -> None:
+    async def _go(self, history: History, client: Client) -> None:
         """Takes other dials; the page that asked hears so with the state."""
         shot = self._stage.shot(history.now)  # or an error, and everything stays as it is
         self._shot, self._history, self.error, self._note = shot, history, "", ""
-        self._wish()
-        await self._tell_state(guest)
+        self._request()
+        await self._tell_state(client)
 
     def _kept(self, changes: Mapping[str, str | None]) -> dict[str, str | None]:
         """Settings that a meter chose, where an automatic mode ends in ``manual``."""
@@ -234,15 +234,17 @@ class Hub:
             return {}
         return {**texts_of_words(chosen.words), "exposure": "manual"}
 
-    def _wish(self) -> None:
+    def _request(self) -> None:
         """Has the picture drawn anew."""
         self.number += 1
         show = self._show
-        self._painter.wish(
-            Wish(self.number, self._stage, self.dials, self._shot, show.models, show.beside)
+        self._painter.request(
+            PictureRequest(
+                self.number, self._stage, self.dials, self._shot, show.models, show.beside
+            )
         )
 
-    async def _show_otherwise(self, show: Show, guest: Guest) -> None:
+    async def _show_otherwise(self, show: Show, client: Client) -> None:
         """Shows pictures in another way; denoising begins with the picture that is there."""
         if show.denoised:
             extras.need("mitsuba_oidn", "denoise")
@@ -251,10 +253,10 @@ class Hub:
         before, self._show = self._show, show
         redraws = (show.models, show.beside) != (before.models, before.beside)
         if redraws:
-            self._wish()
-        elif self._sheet is not None and self._sheet.drawn.wish.number == self.number:
+            self._request()
+        elif self._sheet is not None and self._sheet.drawn.request.number == self.number:
             await asyncio.to_thread(self.publish, self._sheet.drawn)
-        await self._tell_state(guest)
+        await self._tell_state(client)
 
     def _newest(self, use: str) -> Sheet:
         """The newest picture; ``use`` begins the error when there is none yet."""
@@ -295,10 +297,10 @@ class Hub:
 
     # The painter's thread
 
-    def _ask_for_turn(self, wish: Wish) -> None:
+    def _ask_for_turn(self, request: PictureRequest) -> None:
         """Lets the page send its next turn while a picture is developed."""
-        message = {"drawn": wish.number}
-        self._loop.call_soon_threadsafe(lambda: self._start(self._guests.tell(message)))
+        message = {"drawn": request.number}
+        self._loop.call_soon_threadsafe(lambda: self._start(self._clients.tell(message)))
 
     def publish(self, drawn: Drawn) -> None:
         """Develops a picture and sends it to the pages; may be called by any thread."""
@@ -316,30 +318,30 @@ class Hub:
         image = image_of(drawn, clean=clean, tint=show.tint)
         self._loop.call_soon_threadsafe(self._hand_out_preview, drawn, image, show)
 
-    def _failed(self, wish: Wish, error: Exception) -> None:
-        before = wish.dials if self._sheet is None else self._sheet.drawn.wish.dials
+    def _failed(self, request: PictureRequest, error: Exception) -> None:
+        before = request.dials if self._sheet is None else self._sheet.drawn.request.dials
         try:
-            widest = opened_as_wide(wish, error, before)
+            widest = opened_as_wide(request, error, before)
         except Exception as other:  # whatever it is, the painter goes on
             widest, error = None, other
         if widest:
-            self._loop.call_soon_threadsafe(self._open_less, wish, widest)
+            self._loop.call_soon_threadsafe(self._open_less, request, widest)
         else:
-            self._loop.call_soon_threadsafe(self._report, wish, reason_of(error))
+            self._loop.call_soon_threadsafe(self._report, request, reason_of(error))
 
     # The server's thread
 
     def _hand_out(self, drawn: Drawn, image: Image, show: Show, readings: dict[str, Any]) -> None:
-        number = drawn.wish.number
-        if self._sheet is not None and number < self._sheet.drawn.wish.number:
+        number = drawn.request.number
+        if self._sheet is not None and number < self._sheet.drawn.request.number:
             return  # a newer picture was faster
         if number == self.number:
             self._drawn_history = self._history
         self._sheet = self._sheet_of(
             drawn, image, show, denoised=bool(show.denoised) and drawn.is_one
         )
-        for guest in self._guests:
-            self._start(guest.offer(self._sheet))  # before the numbers, which take the page longer
+        for client in self._clients:
+            self._start(client.offer(self._sheet))  # before the numbers, which take the page longer
         if (readings, number) != (self._readings, self._read):
             self._readings, self._read = readings, number
             self._start(self._tell_state())
@@ -349,39 +351,39 @@ class Hub:
         newest = None if self._sheet is None else self._sheet.drawn
         if newest is None or newest.rests or show is not self._show:
             return
-        if drawn.wish.number == newest.wish.number == self.number:
+        if drawn.request.number == newest.request.number == self.number:
             sheet = self._sheet_of(drawn, image, show, denoised=True)
             self._sheet = replace(sheet, drawn=newest)  # values and files are never denoised
-            for guest in self._guests:
-                self._start(guest.offer(self._sheet))
+            for client in self._clients:
+                self._start(client.offer(self._sheet))
 
     def _sheet_of(self, drawn: Drawn, image: Image, show: Show, *, denoised: bool) -> Sheet:
         self._sheets += 1
         return Sheet.of(self._sheets, drawn, image, show, denoised=denoised)
 
-    def _report(self, wish: Wish, text: str) -> None:
-        """Reports why a wish cannot be drawn, and goes back to the last wish that could."""
-        if wish.number != self.number:
+    def _report(self, request: PictureRequest, text: str) -> None:
+        """Reports why a request cannot be drawn, and goes back to the last request that could."""
+        if request.number != self.number:
             return
-        before = None if self._sheet is None else self._sheet.drawn.wish
-        if before is not None and before.asks != wish.asks:
-            if before.dials != wish.dials:
-                self._history = self._drawn_history.without(wish.dials)
+        before = None if self._sheet is None else self._sheet.drawn.request
+        if before is not None and before.asks != request.asks:
+            if before.dials != request.dials:
+                self._history = self._drawn_history.without(request.dials)
             self._show = replace(self._show, models=before.models, beside=before.beside)
             self._shot = before.shot
-            self._wish()
+            self._request()
         self.error = text
         self._start(self._tell_state())
 
-    def _open_less(self, wish: Wish, dials: Dials) -> None:
+    def _open_less(self, request: PictureRequest, dials: Dials) -> None:
         """Goes on at a smaller stop, in the same step, and says so."""
-        if wish.number != self.number:
+        if request.number != self.number:
             return
         self._history = replace(self._history, now=dials)
         self._shot = self._stage.shot(dials)
         stop = dials.texts["f_stop"]
         self._note = f"This lens opens no wider than f/{stop}, so the aperture is there now."
-        self._wish()
+        self._request()
         self._start(self._tell_state())
 
     def _start(self, work: Coroutine[Any, Any, None]) -> None:
@@ -389,6 +391,6 @@ class Hub:
         self._tasks.add(task)  # the loop itself keeps no hold of it
         task.add_done_callback(self._tasks.discard)
 
-    async def _tell_state(self, heard: Guest | None = None) -> None:
+    async def _tell_state(self, heard: Client | None = None) -> None:
         """Tells all pages the present state; an older state would undo a turn on the page."""
-        await self._guests.tell(self._state(), heard)
+        await self._clients.tell(self._state(), heard)

@@ -14,8 +14,8 @@ from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
 
 from .bundle import PAGE, bundled
+from .clients import Client
 from .dials import Dials
-from .guests import Guest
 from .hub import Hub
 from .opening import opened
 from .stage import Stage
@@ -70,17 +70,17 @@ class _Comm:
 
     def __init__(self, widget: AnyWidget) -> None:
         self._widget = widget
-        self._guest: Guest | None = None
+        self._client: Client | None = None
 
     async def begin(self, hub: Hub) -> None:
-        if self._guest is not None:
-            await hub.leave(self._guest)
-        self._guest = hub.join(self)
-        await hub.welcome(self._guest)
+        if self._client is not None:
+            await hub.leave(self._client)
+        self._client = hub.join(self)
+        await hub.welcome(self._client)
 
     async def hear(self, hub: Hub, message: dict[str, Any]) -> None:
-        if self._guest is not None:
-            await hub.hear(self._guest, str(message.get("text", "")))
+        if self._client is not None:
+            await hub.hear(self._client, str(message.get("text", "")))
 
     async def send(self, message: str | bytes) -> None:
         if isinstance(message, str):

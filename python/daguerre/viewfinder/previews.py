@@ -60,9 +60,9 @@ class Previews:
             return
         if time.monotonic() < self._pause_end:  # the last preview was slow
             return
-        if drawn.wish.number == self._turn and drawn.samples < 2 * self._samples:
+        if drawn.request.number == self._turn and drawn.samples < 2 * self._samples:
             return
-        self._turn, self._samples = drawn.wish.number, drawn.samples
+        self._turn, self._samples = drawn.request.number, drawn.samples
         try:
             check_available()  # loads the library, which is not timed
             begun = time.monotonic()

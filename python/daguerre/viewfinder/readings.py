@@ -113,7 +113,7 @@ def _meter(drawn: Drawn) -> dict[str, float] | None:
     Lux are for an incident meter with the constant C = 250 (ISO 2720): E = 2.5 * 2^EV100.
     ``over`` is the distance of the picture from the meter, EV, as ``render`` prints it.
     """
-    whole = drawn.wish.shot.settings.film.resolution
+    whole = drawn.request.shot.settings.film.resolution
     try:
         luminance = luminance_of(drawn.frame, *metered_part(drawn.session, whole))
         over = stops_over_grey(drawn.frame, luminance)
@@ -129,7 +129,7 @@ def _body(drawn: Drawn) -> dict[str, Any]:
     """Positions of the dials of the body, and the place of the camera."""
     session = drawn.session
     camera = session.camera.frozen_at(session.scene.time)
-    asked = drawn.wish.shot.camera.frozen_at(session.scene.time)
+    asked = drawn.request.shot.camera.frozen_at(session.scene.time)
     white, pose = camera.white_balance, np.asarray(camera.transform, np.float64)
     lens = session.prepared.setup.lens
     return {

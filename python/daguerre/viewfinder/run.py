@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from daguerre.checks import is_loopback
 from daguerre.errors import UsageError
 
+from .access import Access, check_origin, new_token
 from .browser import opened
 from .dials import Dials
-from .door import Door, check_origin, new_token
 from .hub import Hub
 from .server import free_socket, serve
 from .stage import Stage
@@ -83,10 +83,10 @@ def run(
     host = f"[{where.host}]" if ":" in where.host else where.host
     url = f"http://{host}:{port}/#{token}"
     say(url)
-    door = Door.at(where.host, port, token, where.proxies)
+    access = Access.at(where.host, port, token, where.proxies)
     page = opened(url, say) if where.browser else contextlib.nullcontext()
     with contextlib.suppress(KeyboardInterrupt), page:
         asyncio.run(
-            serve(sock, door, lambda loop: Hub(stage, dials, words, loop, tev=tev, said=said))
+            serve(sock, access, lambda loop: Hub(stage, dials, words, loop, tev=tev, said=said))
         )
     return INTERRUPTED

@@ -9,7 +9,7 @@ from itertools import islice
 from daguerre.errors import DaguerreError
 
 from .beside import other_of
-from .drawn import Wish
+from .drawn import PictureRequest
 from .reasons import reason_of
 from .shot import Shot
 from .stage import Stage
@@ -48,16 +48,16 @@ class Rung:
         return all(a.is_lit_as(b) for a, b in zip(self.shots, other.shots, strict=False))
 
 
-def rungs_of(wish: Wish) -> Iterator[Rung]:
-    """Rungs of a wish; automatic modes meter when theirs is asked for."""
-    stage = wish.stage
-    if wish.models:
-        shot = stage.exposed(wish.shot)
+def rungs_of(request: PictureRequest) -> Iterator[Rung]:
+    """Rungs of a request; automatic modes meter when theirs is asked for."""
+    stage = request.stage
+    if request.models:
+        shot = stage.exposed(request.shot)
         samples = shot.settings.sampling.most
         shots = tuple(shot.by_model(model, BESIDE, samples) for model in MODELS)
         yield Rung(shots, MODELS, main=len(shots) - 1)
         return
-    quick = stage.exposed(wish.shot, fresh=False)
+    quick = stage.exposed(request.shot, fresh=False)
     ghosts = () if (layer := quick.ghosts()) is None else (layer,)
     # Exact ghosts take long to set up: a picture on the way must come first, however small.
     known = set() if ghosts else {quick.settings.film.resolution}
@@ -66,13 +66,13 @@ def rungs_of(wish: Wish) -> Iterator[Rung]:
         if (size := small.settings.film.resolution) not in known:
             known.add(size)
             yield Rung((small,), last=False, ghosts=ghosts)
-    yield Rung((stage.exposed(wish.shot),))
+    yield Rung((stage.exposed(request.shot),))
 
 
-def rung_of(wish: Wish, index: int) -> Rung:
-    """One rung of a wish, the last one if it has fewer."""
-    *_, rung = islice(rungs_of(wish), index + 1)
-    return rung if wish.beside is None else _paired(rung, wish.stage, wish.beside)
+def rung_of(request: PictureRequest, index: int) -> Rung:
+    """A rung of a request, the last rung if it has fewer."""
+    *_, rung = islice(rungs_of(request), index + 1)
+    return rung if request.beside is None else _paired(rung, request.stage, request.beside)
 
 
 def _paired(rung: Rung, stage: Stage, change: Mapping[str, str]) -> Rung:

@@ -16,8 +16,8 @@ from urllib.parse import urlsplit
 from daguerre.errors import UsageError
 from daguerre.lenses.index import names
 
+from .access import HEADERS, Access
 from .bundle import PAGE, bundled
-from .door import HEADERS, Door
 from .hub import Hub
 from .lens_list import photograph_path
 from .messages import MAX_BYTES
@@ -39,7 +39,7 @@ PATIENCE_S = 5.0
 #: Seconds that a page has to answer when the server ends; a page that hangs never answers.
 GOODBYE_S = 1.0
 #: Pages at once.
-MOST_GUESTS = 16
+MOST_CLIENTS = 16
 #: Connections at once, with those that have not sent a token yet.
 MOST_LINES = 64
 #: Ports to try after a port that is in use.
@@ -51,22 +51,22 @@ class Server:
     """A viewfinder's server.
 
     Attributes:
-        door: Who is let in.
+        access: Allowed hosts, origins and the token.
         hub: State that the pages share.
     """
 
-    door: Door
+    access: Access
     hub: Hub
-    guests: int = 0
+    clients: int = 0
     lines: int = 0
 
     def answer(self, connection: ServerConnection, request: Request) -> Response | None:
         """Answers a request with a file of the page; None: a WebSocket."""
         path = urlsplit(request.path).path
-        if not self.door.knows_host(request.headers.get_all("Host")):
+        if not self.access.allows_host(request.headers.get_all("Host")):
             return _plain(connection, HTTPStatus.MISDIRECTED_REQUEST, "wrong Host")
         if path == SOCKET:
-            if not self.door.knows_origin(request.headers.get_all("Origin")):
+            if not self.access.allows_origin(request.headers.get_all("Origin")):
                 return _plain(connection, HTTPStatus.FORBIDDEN, "wrong Origin")
             if self.lines >= MOST_LINES:
                 return _plain(connection, HTTPStatus.SERVICE_UNAVAILABLE, "too many connections")
@@ -94,8 +94,8 @@ class Server:
         except TimeoutError:
             await connection.close(4408, "no token")
             return False
-        if isinstance(first, str) and self.door.opens(first):
-            if self.guests < MOST_GUESTS:
+        if isinstance(first, str) and self.access.allows_token(first):
+            if self.clients < MOST_CLIENTS:
                 return True
             await connection.close(4429, "too many pages")
             return False
@@ -103,18 +103,18 @@ class Server:
         return False
 
     async def _serve(self, connection: ServerConnection) -> None:
-        self.guests += 1
+        self.clients += 1
         from websockets.exceptions import ConnectionClosed
 
-        guest = self.hub.join(_Line(connection))
+        client = self.hub.join(_Line(connection))
         try:
-            await self.hub.welcome(guest)
+            await self.hub.welcome(client)
             with contextlib.suppress(ConnectionClosed):  # without a word: a page that is stuck
                 async for message in connection:
-                    await self.hub.hear(guest, message)
+                    await self.hub.hear(client, message)
         finally:
-            self.guests -= 1
-            await self.hub.leave(guest)
+            self.clients -= 1
+            await self.hub.leave(client)
 
 
 class _Line:
@@ -197,14 +197,14 @@ def free_socket(host: str, port: int) -> socket.socket:
 
 async def serve(
     sock: socket.socket,
-    door: Door,
+    access: Access,
     hub_of: Callable[[asyncio.AbstractEventLoop], Hub],
     **more: Any,
 ) -> None:
     """Serves until it is cancelled."""
     from websockets.asyncio.server import serve as listen
 
-    server = Server(door, hub_of(asyncio.get_running_loop()))
+    server = Server(access, hub_of(asyncio.get_running_loop()))
     try:
         async with listen(
             server.talk,

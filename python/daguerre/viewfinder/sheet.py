@@ -28,7 +28,7 @@ class Sheet:
         """Packs a picture: the length of its head, the head as JSON, the pixels."""
         head = {
             "picture": number,
-            "turn": drawn.wish.number,
+            "turn": drawn.request.number,
             "size": image.size,
             "kind": image.kind,
             "samples": drawn.samples,
@@ -39,7 +39,7 @@ class Sheet:
             "panels": [panel.name for panel in drawn.panels],
             "main": drawn.main,
             "part": image.part,
-            "divided": bool(drawn.panels) and drawn.wish.beside is not None,
+            "divided": bool(drawn.panels) and drawn.request.beside is not None,
             "histogram": image.histogram,
             "tint": image.tint,
         }
@@ -52,7 +52,7 @@ class Sheet:
             return None
         x, y, drawn = probe.x, probe.y, self.drawn
         shown = drawn.panels[probe.part] if drawn.panels else drawn
-        width, height = drawn.wish.shot.settings.film.resolution
+        width, height = drawn.request.shot.settings.film.resolution
         own, (left, top, *_) = shown.session.prepared.setup.resolution, shown.session.crop
         found = value_at(shown.frame, x * own[0] // width - left, y * own[1] // height - top)
         distance = distance_at(
@@ -67,7 +67,7 @@ class Sheet:
 
     def section(self, x: float, y: float) -> dict[str, Any]:
         """Glass with the rays of a point of the picture, as a drawing."""
-        width, height = self.drawn.wish.shot.settings.film.resolution
+        width, height = self.drawn.request.shot.settings.film.resolution
         own = self.drawn.session.prepared.setup.resolution
         found = glass_at(self.drawn.session, x * own[0] / width, y * own[1] / height)
         return found | {"x": x, "y": y}

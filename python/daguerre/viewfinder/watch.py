@@ -6,7 +6,7 @@ import asyncio
 import itertools
 from pathlib import Path
 
-from .guests import Guests
+from .clients import Clients
 
 #: Time between two looks at the scene's file, s.
 _LOOK_S = 2.5
@@ -14,7 +14,7 @@ _LOOK_S = 2.5
 _LOOKS = 4
 
 
-async def watch(path: Path | None, guests: Guests) -> None:
+async def watch(path: Path | None, clients: Clients) -> None:
     """Tells the pages when the file changes, and at times that the server lives."""
     known = _stamp(path)
     for look in itertools.count(1):
@@ -22,9 +22,9 @@ async def watch(path: Path | None, guests: Guests) -> None:
         now = _stamp(path)
         if now not in (known, None):
             known = now
-            await guests.tell({"changed": "" if path is None else path.name})
+            await clients.tell({"changed": "" if path is None else path.name})
         if look % _LOOKS == 0:
-            await guests.tell({"ping": look})
+            await clients.tell({"ping": look})
 
 
 def _stamp(path: Path | None) -> tuple[int, int] | None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from daguerre.lenses.errors import LensError
 
 from .dials import Dials
-from .drawn import Wish
+from .drawn import PictureRequest
 from .shot import Shot
 from .stage import Stage
 
@@ -22,18 +22,18 @@ def widest_stop(stage: Stage, shot: Shot) -> float:
     return lens.widest_stop if lens.glass else 0.0
 
 
-def opened_as_wide(wish: Wish, error: Exception, before: Dials) -> Dials | None:
+def opened_as_wide(request: PictureRequest, error: Exception, before: Dials) -> Dials | None:
     """Dials at the widest stop of the lens, after a lens or a zoom that opens less was chosen.
 
     Args:
-        wish: The wish that cannot be drawn.
-        error: Error of the wish.
+        request: The request that cannot be drawn.
+        error: Error of the request.
         before: Dials of the picture that is shown.
 
     Returns:
         The dials; None: the error has another cause, or the stop itself was turned.
     """
-    stops = [[dials.texts.get(name) for name in _STOPS] for dials in (before, wish.dials)]
+    stops = [[dials.texts.get(name) for name in _STOPS] for dials in (before, request.dials)]
     if not isinstance(error, LensError) or error.code != "lens-f-stop" or stops[0] != stops[1]:
         return None
-    return wish.dials.turned({"f_stop": f"{widest_stop(wish.stage, wish.shot):.3g}"})
+    return request.dials.turned({"f_stop": f"{widest_stop(request.stage, request.shot):.3g}"})

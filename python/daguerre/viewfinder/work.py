@@ -1,7 +1,7 @@
-"""Work on a wish: its rungs, each with more and more samples, until it rests.
+"""Work on a request: its rungs, each with more and more samples, until it rests.
 
-A wish for the same light in another brightness does not end the work: the picture that is there is
-developed anew, and the samples that are being drawn count for it, too.
+A request for the same light in another brightness does not end the work: the present picture is
+developed anew, and the samples under way count for it, too.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from daguerre.frame.frame import Frame
 from daguerre.rendering.rounds import rounds
 from daguerre.rendering.session import Session
 
-from .drawn import Drawn, Panel, Wish
+from .drawn import Drawn, Panel, PictureRequest
 from .ghosts import Layer
 from .rungs import Rung, rung_of
 from .shot import Shot
@@ -37,34 +37,34 @@ class Do(Protocol):
 
 
 class Work:
-    """Work on a wish.
+    """Work on a request.
 
     Attributes:
-        wish: The wish, or a later wish for the same light.
-        drawn: Newest picture of the wish; None: not drawn yet.
+        request: The request, or a later request for the same light.
+        drawn: Newest picture of the request; None: not drawn yet.
     """
 
-    def __init__(self, wish: Wish) -> None:
-        self.wish = wish
+    def __init__(self, request: PictureRequest) -> None:
+        self.request = request
         self.drawn: Drawn | None = None
         self._index = 0
         self._rung: Rung | None = None
         self._sessions: list[Session] = []
         self._layers: list[Layer | None] = []  # of live ghosts
 
-    def expose(self, wish: Wish) -> bool:
-        """Goes on for another wish if that asks for the same light; returns whether it does."""
-        if not wish.shows_as(self.wish):
+    def expose(self, request: PictureRequest) -> bool:
+        """Goes on for another request if that asks for the same light; returns whether it does."""
+        if not request.shows_as(self.request):
             return False
         if self._rung is None:  # the first rung is being set up
-            fits = wish.is_lit_as(self.wish)
+            fits = request.is_lit_as(self.request)
         else:
-            rung = rung_of(wish, self._index)
+            rung = rung_of(request, self._index)
             if fits := rung.is_lit_as(self._rung):
                 _expose(self._sessions, self._layers, rung)
                 self._rung = rung
-                self.drawn = self.drawn and self._exposed(self.drawn, wish)
-        self.wish = wish if fits else self.wish
+                self.drawn = self.drawn and self._exposed(self.drawn, request)
+        self.request = request if fits else self.request
         return fits
 
     def pictures(self, do: Do) -> Iterator[Drawn]:
@@ -76,23 +76,23 @@ class Work:
             while (step := do(partial(next, steps, None))) is not None:
                 plain = [session.frame(truth=False) for session in self._sessions]
                 views = list(map(_with_ghosts, plain, self._layers))
-                self.drawn = self._drawn(self.wish, views, *step)
+                self.drawn = self._drawn(self.request, views, *step)
                 yield self.drawn
                 if step[1]:
                     return
 
     def _set_up(self, index: int, do: Do) -> None:
-        """Sets up a rung as the newest wish has it."""
-        wish = self.wish
+        """Sets up a rung as the newest request has it."""
+        request = self.request
 
         def make() -> tuple[Rung, list[Session], list[Layer | None]]:
-            rung = rung_of(wish, index)
-            sessions = [_session(wish.stage, shot) for shot in rung.shots]
-            return rung, sessions, self._layers_of(rung, wish.stage)
+            rung = rung_of(request, index)
+            sessions = [_session(request.stage, shot) for shot in rung.shots]
+            return rung, sessions, self._layers_of(rung, request.stage)
 
         rung, sessions, layers = do(make)
-        if self.wish is not wish:  # another brightness was asked for meanwhile
-            rung = rung_of(self.wish, index)
+        if self.request is not request:  # another brightness was asked for meanwhile
+            rung = rung_of(self.request, index)
         _expose(sessions, layers, rung)
         self._index, self._rung, self._sessions, self._layers = index, rung, sessions, layers
 
@@ -105,30 +105,32 @@ class Work:
         layers = [stage.layers.draw(_session(stage, shot)) for shot in rung.ghosts]
         return layers or [None] * len(rung.shots)
 
-    def _drawn(self, wish: Wish, views: list[View], samples: int, rests: bool) -> Drawn:
+    def _drawn(
+        self, request: PictureRequest, views: list[View], samples: int, rests: bool
+    ) -> Drawn:
         assert self._rung is not None
         rung, main = self._rung, self._rung.main
         frame, sharp = views[main]
         parts = zip(rung.names, rung.shots, self._sessions, views, strict=False)
         return Drawn(
-            wish,
+            request,
             rung.shots[main],
             self._sessions[main],
             frame,
             samples,
             rests,
-            whole=rung.last and not wish.models,
+            whole=rung.last and not request.models,
             panels=tuple(Panel(name, shot, session, *view) for name, shot, session, view in parts),
             sharp=sharp,
             note=rung.note,
         )
 
-    def _exposed(self, drawn: Drawn, wish: Wish) -> Drawn:
-        """Returns a picture of the rung with the brightness of another wish."""
+    def _exposed(self, drawn: Drawn, request: PictureRequest) -> Drawn:
+        """Returns a picture of the rung with the brightness of another request."""
         before = [(one.frame, one.sharp) for one in drawn.panels or (drawn,)]
         parts = zip(self._sessions, self._layers, before, strict=True)
         views = [_view_exposed(*part) for part in parts]
-        return self._drawn(wish, views, drawn.samples, drawn.rests)
+        return self._drawn(request, views, drawn.samples, drawn.rests)
 
 
 def _view_exposed(session: Session, layer: Layer | None, view: View) -> View:

@@ -45,7 +45,7 @@ class ClusterFlags:
     ] = False
 
     @contextlib.contextmanager
-    def crew(self, tell: Any) -> Iterator[Any]:
+    def worker_pool(self, tell: Any) -> Iterator[Any]:
         """Opens the cluster of ``--cluster``, with a first worker; None without the flag."""
         if self.cluster is None:
             yield None
@@ -53,5 +53,5 @@ class ClusterFlags:
         from daguerre.cluster.opened import opened
 
         how = {"insecure": self.insecure_cluster, "mixed": self.mixed_builds}
-        with opened(self.cluster, tell=tell, **how) as crew:
-            yield crew
+        with opened(self.cluster, tell=tell, **how) as pool:
+            yield pool

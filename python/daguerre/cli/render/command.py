@@ -80,5 +80,5 @@ def render(
         plan = replace(plan, stage=lambda n, now: scene_flags.throw_plate(now, taken, n))
     if job_flags.dry_run:
         return describe(plan, scene, scene_path)
-    with job_flags.crew(console.warn) as crew:
-        return run(plan, scene, scene_path, labels, launched, crew)
+    with job_flags.worker_pool(console.warn) as pool:
+        return run(plan, scene, scene_path, labels, launched, pool)

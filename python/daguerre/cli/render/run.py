@@ -17,14 +17,19 @@ from .plan import Plan
 from .reporter import ConsoleReporter
 
 if TYPE_CHECKING:
-    from daguerre.cluster.crew import Crew
+    from daguerre.cluster.pool import WorkerPool
     from daguerre.rendering.session import Session
 
 INTERRUPTED = 75
 
 
 def run(
-    plan: Plan, scene: Scene, path: Path, labels: Labels, launched: float, crew: Crew | None = None
+    plan: Plan,
+    scene: Scene,
+    path: Path,
+    labels: Labels,
+    launched: float,
+    pool: WorkerPool | None = None,
 ) -> int:
     """Draws the pictures in turn; returns the exit code.
 
@@ -34,13 +39,13 @@ def run(
         path: File of the scene, for messages.
         labels: Collector of labels.
         launched: Start of the command, by ``time.monotonic``, s.
-        crew: Workers of a cluster that draw; None: this machine does.
+        pool: Workers of a cluster that draw; None: this machine does.
     """
     job = _job(plan, scene, path)
-    if crew is not None:
+    if pool is not None:
         from daguerre.cluster.work import work_of
 
-        job.work_of = work_of(crew, job)
+        job.work_of = work_of(pool, job)
 
     def opened(picture: Picture, session: Session) -> None:
         maps = plan.maps_of(picture)

@@ -49,7 +49,7 @@ class Viewfinder {
     this.open = null;    // what the stage offers
     this.state = null;   // dials and readings
     this.mine = false;   // whether this page may turn
-    this.wish = null;     // turns to send
+    this.unsent = null;   // turns to send
     this.sent = false;   // whether some were sent whose picture has not come
     this.newest = -1;    // turn of the newest picture
     this.unheard = 0;    // changes that the server has not answered yet
@@ -74,7 +74,7 @@ class Viewfinder {
 
   /** Sends a message, after what was turned before. */
   send(message) {
-    if (this.wish && !message.got && !message.probe) this.sendTurn();
+    if (this.unsent && !message.got && !message.probe) this.sendTurn();
     if (CHANGES.some((name) => name in message)) this.unheard++;
     this.link.send(message);
     this.markBusy();
@@ -85,23 +85,23 @@ class Viewfinder {
    * the work on the one before, so that faster ones would leave a hand that moves without pictures.
    */
   turn(dials) {
-    this.wish = {...this.wish, ...dials};
+    this.unsent = {...this.unsent, ...dials};
     if (!this.sent) this.sendTurn();
   }
 
   sendTurn() {
     clearTimeout(this.patience);
-    this.sent = this.wish !== null;
+    this.sent = this.unsent !== null;
     if (!this.sent) return;
-    const turn = this.wish;
-    this.wish = null;
+    const turn = this.unsent;
+    this.unsent = null;
     this.send({turn});
     this.patience = setTimeout(() => this.sendTurn(), PATIENCE_MS);
   }
 
   /** Whether the readings are those of all that was turned; if not, what was turned stays where it is. */
   get current() {
-    return this.wish === null && this.unheard === 0 && (this.state.read === this.state.turn || this.state.error !== '');
+    return this.unsent === null && this.unheard === 0 && (this.state.read === this.state.turn || this.state.error !== '');
   }
 
   /** Tells screen readers whether the picture still changes. */

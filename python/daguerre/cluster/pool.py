@@ -1,4 +1,4 @@
-"""Crew: workers that draw for a client, and the tasks that are under way."""
+"""Worker pool: workers that draw for a client, and the tasks that were submitted to them."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ _RETRY_S = 5
 
 
 @dataclass(eq=False)
-class Flight:
+class Submission:
     """A task that was sent to the workers.
 
     Attributes:
         task: The task.
         future: Dask's future of the answer.
-        parts: Flights with answers that this task adds; empty: the task draws.
+        parts: Submissions with answers that this task adds; empty: the task draws.
         failed_on: Workers on which the task failed.
         only: Workers that may draw the task; empty: all.
         alone: Whether the client must take the answer itself, unfolded.
@@ -47,7 +47,7 @@ class Flight:
 
     task: Task
     future: Any
-    parts: tuple[Flight, ...] = ()
+    parts: tuple[Submission, ...] = ()
     failed_on: tuple[str, ...] = ()
     only: frozenset[str] = frozenset()
     alone: bool = False
@@ -56,7 +56,7 @@ class Flight:
     began: float = field(default_factory=time.monotonic)
 
     @property
-    def landed(self) -> bool:
+    def done(self) -> bool:
         """Whether the task ended: with an answer, an error, or lost."""
         return str(self.future.status) != "pending"
 
@@ -88,7 +88,7 @@ class GivenUp(InputError):
         self.task = task
 
 
-class Crew:
+class WorkerPool:
     """Workers of a Dask cluster that draw tasks.
 
     Args:
@@ -97,7 +97,7 @@ class Crew:
         tell: Called with a sentence when a worker is lost or a task fails.
 
     Attributes:
-        flights: Tasks under way.
+        submissions: Tasks under way.
         drawn_again: Number of tasks that began anew.
         per_second: Samples of all pixels that a worker drew last, 1/s; 0: not known yet.
         answer_s: Time that the last answer took to be packed, fetched and added, s.
@@ -109,25 +109,25 @@ class Crew:
         self._address, self._security = client.scheduler.address, client.security
         self.workers = Workers(client, mixed=mixed, tell=tell)
         self.values = Values()
-        self.flights: list[Flight] = []
+        self.submissions: list[Submission] = []
         self.drawn_again = 0
         self.per_second = self.answer_s = 0.0
 
     def look(self) -> None:
-        """Looks after workers and scheduler; both may come and go.
+        """Updates the workers, and waits for a scheduler that is gone; both may come and go.
 
         Raises:
-            InputError: They did not come back.
+            InputError: The scheduler did not come back.
         """
         try:
             self.workers.look()
         except (OSError, RuntimeError) as error:  # TimeoutError and CommClosedError are OSErrors
             self._wait_for_scheduler(error)
         good = self.workers.good
-        for flight in [one for one in self.flights if one.only and not one.only & good]:
-            if not flight.landed:  # all that might draw it are gone
-                self.drop(flight)
-                self.begin(flight.task, flight.failed_on)
+        for submission in [one for one in self.submissions if one.only and not one.only & good]:
+            if not submission.done:  # all that might draw it are gone
+                self.drop(submission)
+                self.begin(submission.task, submission.failed_on)
 
     def serve(self) -> None:
         """Sends values to workers that ask for them, for whatever picture.
@@ -135,11 +135,11 @@ class Crew:
         Raises:
             GivenUp: Several workers cannot keep them.
         """
-        for flight in [one for one in self.flights if one.has_words and one.answer is None]:
-            flight.answer = self._answer(flight)
-            if isinstance(flight.answer, Needs):
-                self.flights.remove(flight)
-                self._provide(flight, flight.answer)
+        for submission in [one for one in self.submissions if one.has_words and one.answer is None]:
+            submission.answer = self._answer(submission)
+            if isinstance(submission.answer, Needs):
+                self.submissions.remove(submission)
+                self._provide(submission, submission.answer)
 
     def begin(
         self,
@@ -147,77 +147,83 @@ class Crew:
         failed_on: Iterable[str] = (),
         but: Iterable[str] = (),
         home: str = "",
-    ) -> Flight:
+    ) -> Submission:
         """Sends a task to the workers, preferably to its home and not where it failed."""
         good, avoided = self.workers.good, {*failed_on, *but}
         free = avoided.isdisjoint(good) and self.workers.all_are_good
         only = frozenset() if free else frozenset(good - avoided or good)
         home = home if free and home in good else ""
         future = self._submit(only, on_worker.draw, task.to_text(), home=home)
-        flight = Flight(task, future, failed_on=tuple(failed_on), only=only, home=home)
-        self.flights.append(flight)
-        return flight
+        submission = Submission(task, future, failed_on=tuple(failed_on), only=only, home=home)
+        self.submissions.append(submission)
+        return submission
 
-    def fold(self, flights: Sequence[Flight]) -> Flight:
-        """Has a worker add the answers of flights with adjacent samples."""
-        task = replace(flights[0].task, end=flights[-1].task.end)
+    def fold(self, submissions: Sequence[Submission]) -> Submission:
+        """Has a worker add the answers of submissions with adjacent samples."""
+        task = replace(submissions[0].task, end=submissions[-1].task.end)
         only = frozenset() if self.workers.all_are_good else frozenset(self.workers.good)
-        future = self._submit(only, on_worker.fold, task.to_text(), *(f.future for f in flights))
-        for one in flights:
-            self.flights.remove(one)
-        flight = Flight(task, future, parts=tuple(flights), only=only)
-        self.flights.append(flight)
-        return flight
+        future = self._submit(
+            only, on_worker.fold, task.to_text(), *(f.future for f in submissions)
+        )
+        for one in submissions:
+            self.submissions.remove(one)
+        submission = Submission(task, future, parts=tuple(submissions), only=only)
+        self.submissions.append(submission)
+        return submission
 
-    def result(self, flight: Flight, key: dict[str, str]) -> Sums | None:
-        """Returns the sums of a flight that has landed; None: others take its place.
+    def result(self, submission: Submission, key: dict[str, str]) -> Sums | None:
+        """Returns the sums of a submission that is done; None: new submissions replace it.
 
         Args:
-            flight: The flight.
-            key: Key of its picture.
+            submission: The submission.
+            key: Key of the picture.
 
         Raises:
             GivenUp: Its task failed on several workers.
         """
-        self.flights.remove(flight)
-        answer = self._answer(flight)
+        self.submissions.remove(submission)
+        answer = self._answer(submission)
         if isinstance(answer, Sums):
             answer = self._checked(answer, key)
         if isinstance(answer, Sums):
             return answer
-        if flight.parts:
-            self._take_apart(flight)
+        if submission.parts:
+            self._take_apart(submission)
         elif answer is None:
-            self._again(flight)
+            self._again(submission)
         elif isinstance(answer, Needs):
-            self._provide(flight, answer)
+            self._provide(submission, answer)
         else:
-            self._failed(flight, answer)
+            self._failed(submission, answer)
         return None
 
-    def piloted(self, flight: Flight) -> Plan | None:
-        """Result of the worker's pilot render, from a flight that landed; None: not known."""
-        flight.answer = self._answer(flight)
-        return flight.answer.piloted if isinstance(flight.answer, Sums) else None
+    def piloted(self, submission: Submission) -> Plan | None:
+        """Result of the worker's pilot render, from a submission that is done; None: not known."""
+        submission.answer = self._answer(submission)
+        return submission.answer.piloted if isinstance(submission.answer, Sums) else None
 
-    def is_late(self, flight: Flight) -> bool:
+    def is_late(self, submission: Submission) -> bool:
         """Whether a task takes much longer than the speed of the workers predicts."""
-        should = (flight.task.end - flight.task.begin) / self.per_second if self.per_second else inf
-        return time.monotonic() - flight.began > max(LATE * should, LATE_S)
+        should = (
+            (submission.task.end - submission.task.begin) / self.per_second
+            if self.per_second
+            else inf
+        )
+        return time.monotonic() - submission.began > max(LATE * should, LATE_S)
 
-    def drop(self, *flights: Flight) -> None:
+    def drop(self, *submissions: Submission) -> None:
         """Gives up tasks."""
-        self.client.cancel([flight.future for flight in flights], force=True)
-        self.flights = [one for one in self.flights if one not in flights]
+        self.client.cancel([submission.future for submission in submissions], force=True)
+        self.submissions = [one for one in self.submissions if one not in submissions]
 
-    def unfold(self, flight: Flight) -> None:
+    def unfold(self, submission: Submission) -> None:
         """Gives up a fold; the client takes the answers of its parts."""
-        self.drop(flight)
-        self._take_apart(flight)
+        self.drop(submission)
+        self._take_apart(submission)
 
     def drop_all(self) -> None:
         """Gives up all tasks."""
-        self.drop(*self.flights)
+        self.drop(*self.submissions)
 
     def close(self) -> None:
         """Gives up all tasks, and a connection that it opened itself."""
@@ -226,9 +232,11 @@ class Crew:
             if self.client is not self._given:
                 self.client.close()
 
-    def flights_of(self, place: Place) -> list[Flight]:
-        """Flights of a picture, in the order of their begin."""
-        own = [f for f in self.flights if (f.task.scene, f.task.view) == (place.scene, place.view)]
+    def submissions_of(self, place: Place) -> list[Submission]:
+        """Submissions of a picture, in the order of their begin."""
+        own = [
+            f for f in self.submissions if (f.task.scene, f.task.view) == (place.scene, place.view)
+        ]
         return sorted(own, key=lambda one: one.task.begin)
 
     def holders(self) -> dict[str, set[str]]:
@@ -257,25 +265,25 @@ class Crew:
                     raise
                 self._wait_for_scheduler(error)
 
-    def _answer(self, flight: Flight) -> Answer | None:
-        """Answer of a flight; None: the scheduler lost it."""
-        if flight.answer is not None or flight.future.status in ("cancelled", "lost"):
-            return flight.answer
+    def _answer(self, submission: Submission) -> Answer | None:
+        """Answer of a submission; None: the scheduler lost it."""
+        if submission.answer is not None or submission.future.status in ("cancelled", "lost"):
+            return submission.answer
         try:
             direct = self.workers.all_are_reached
-            return answer_of(self.client.gather(flight.future, direct=direct))
+            return answer_of(self.client.gather(submission.future, direct=direct))
         except InputError as error:
             return Failed("a worker", str(error))
         except CancelledError:
             return None
         except Exception as error:  # whatever Dask raises: a killed worker, no memory
-            if flight.future.status in ("cancelled", "lost"):
+            if submission.future.status in ("cancelled", "lost"):
                 return None
             worker = getattr(error, "last_worker", None)  # KilledWorker
             return Failed(str(worker.address) if worker else "a worker", str(error))
 
     def _checked(self, sums: Sums, key: dict[str, str]) -> Sums | Failed:
-        """Sums of the picture of a key; a worker that draws others is refused."""
+        """Sums of the picture of a key; refuses a worker with sums of another picture."""
         try:
             sums.check_key(key, mixed=self.mixed)
         except MismatchError as error:
@@ -283,35 +291,35 @@ class Crew:
             return Failed(sums.worker, str(error))
         return sums
 
-    def _provide(self, flight: Flight, needs: Needs) -> None:
+    def _provide(self, submission: Submission, needs: Needs) -> None:
         """Sends values to the worker that asked for them, and the task anew."""
         try:
-            reason = self.values.send(self.client, needs.worker, needs.names, flight.began)
+            reason = self.values.send(self.client, needs.worker, needs.names, submission.began)
         except (OSError, RuntimeError):  # the worker is gone, or the scheduler: look() waits for it
-            self._again(flight)
+            self._again(submission)
             return
         if reason:  # its disk is full
             self.workers.refuse(needs.worker, reason)
-            self._failed(flight, Failed(needs.worker, reason))
+            self._failed(submission, Failed(needs.worker, reason))
         else:
-            self.begin(flight.task, flight.failed_on, home=flight.home)
+            self.begin(submission.task, submission.failed_on, home=submission.home)
 
-    def _take_apart(self, fold: Flight) -> None:
+    def _take_apart(self, fold: Submission) -> None:
         for part in fold.parts:
             part.alone = True
-        self.flights.extend(fold.parts)
+        self.submissions.extend(fold.parts)
 
-    def _failed(self, flight: Flight, failed: Failed) -> None:
-        failed_on, task = (*flight.failed_on, failed.worker), flight.task
+    def _failed(self, submission: Submission, failed: Failed) -> None:
+        failed_on, task = (*submission.failed_on, failed.worker), submission.task
         if len(failed_on) >= TRIES or self.workers.good <= set(failed_on):
             raise GivenUp(task, failed_on, failed.reason)
         self._tell(f"cluster: {failed.worker}: {failed.reason}; its task is drawn again elsewhere")
-        self._again(flight, failed_on)
+        self._again(submission, failed_on)
 
-    def _again(self, flight: Flight, failed_on: tuple[str, ...] | None = None) -> None:
+    def _again(self, submission: Submission, failed_on: tuple[str, ...] | None = None) -> None:
         self.drawn_again += 1
-        again = flight.failed_on if failed_on is None else failed_on
-        self.begin(flight.task, again, home=flight.home)
+        again = submission.failed_on if failed_on is None else failed_on
+        self.begin(submission.task, again, home=submission.home)
 
     def _wait_for_scheduler(self, error: Exception) -> None:
         """Waits for a scheduler that went away to come back, as on a restart.

@@ -5,15 +5,15 @@ from __future__ import annotations
 import pytest
 
 from daguerre.checks import is_loopback
-from daguerre.viewfinder.door import Door, new_token
+from daguerre.viewfinder.access import Access, new_token
 
-DOOR = Door.at("127.0.0.1", 8321, "secret")
+ACCESS = Access.at("127.0.0.1", 8321, "secret")
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1:8321", "localhost:8321"])
 def test_our_own_names_are_known(host: str) -> None:
-    assert DOOR.knows_host([host])
-    assert DOOR.knows_origin([f"http://{host}"])
+    assert ACCESS.allows_host([host])
+    assert ACCESS.allows_origin([f"http://{host}"])
 
 
 @pytest.mark.parametrize(
@@ -33,7 +33,7 @@ def test_our_own_names_are_known(host: str) -> None:
     ],
 )
 def test_other_hosts_are_not(hosts: list[str]) -> None:
-    assert not DOOR.knows_host(hosts)
+    assert not ACCESS.allows_host(hosts)
 
 
 @pytest.mark.parametrize(
@@ -51,20 +51,20 @@ def test_other_hosts_are_not(hosts: list[str]) -> None:
     ],
 )
 def test_other_origins_are_not(origin: str) -> None:
-    assert not DOOR.knows_origin([origin])
+    assert not ACCESS.allows_origin([origin])
 
 
 def test_a_proxy_adds_its_origin() -> None:
-    door = Door.at("127.0.0.1", 8321, "secret", ["https://hub.example"])
-    assert door.knows_origin(["https://hub.example"])
-    assert door.knows_host(["hub.example"])
-    assert not door.knows_origin(["https://hub.example.evil"])
+    access = Access.at("127.0.0.1", 8321, "secret", ["https://hub.example"])
+    assert access.allows_origin(["https://hub.example"])
+    assert access.allows_host(["hub.example"])
+    assert not access.allows_origin(["https://hub.example.evil"])
 
 
 @pytest.mark.parametrize("token", ["", "secre", "secret ", "Secret", "secret\0", "geheim", "ü"])
 def test_another_token_opens_nothing(token: str) -> None:
-    assert not DOOR.opens(token)
-    assert DOOR.opens("secret")
+    assert not ACCESS.allows_token(token)
+    assert ACCESS.allows_token("secret")
 
 
 def test_tokens_have_256_bits_and_differ() -> None:

@@ -47,13 +47,13 @@ def check_origin(text: str) -> None:
 
 
 @dataclass(frozen=True)
-class Door:
-    """Addresses and token of a server.
+class Access:
+    """Allowed hosts, origins and the token of a server.
 
     Attributes:
         token: Text that a WebSocket sends first.
-        hosts: Values of Host that are let in, such as ``127.0.0.1:8321``.
-        origins: Values of Origin that are let in, such as ``http://127.0.0.1:8321``.
+        hosts: Allowed values of Host, such as ``127.0.0.1:8321``.
+        origins: Allowed values of Origin, such as ``http://127.0.0.1:8321``.
     """
 
     token: str
@@ -61,12 +61,12 @@ class Door:
     origins: frozenset[str]
 
     @classmethod
-    def at(cls, host: str, port: int, token: str, more: Sequence[str] = ()) -> Door:
-        """Makes the door of a server.
+    def at(cls, host: str, port: int, token: str, more: Sequence[str] = ()) -> Access:
+        """Makes the access control of a server.
 
         Args:
             host: Address that the server listens on.
-            port: Its port.
+            port: Port of the server.
             token: The token.
             more: Further names of the server, as in a proxy's ``https://HOST:PORT``.
         """
@@ -77,14 +77,14 @@ class Door:
         hosts |= {one.partition("://")[2] for one in more}
         return cls(token, frozenset(hosts), frozenset(origins))
 
-    def knows_host(self, hosts: Sequence[str]) -> bool:
-        """Whether a request has one Host, and it is one of ours."""
+    def allows_host(self, hosts: Sequence[str]) -> bool:
+        """Whether a request has a single Host, an allowed value."""
         return len(hosts) == 1 and hosts[0] in self.hosts
 
-    def knows_origin(self, origins: Sequence[str]) -> bool:
+    def allows_origin(self, origins: Sequence[str]) -> bool:
         """Whether a WebSocket comes from our own page, or from a program without a browser."""
         return not origins or (len(origins) == 1 and origins[0] in self.origins)
 
-    def opens(self, token: str) -> bool:
-        """Whether the token is right, in a time that does not depend on it."""
+    def allows_token(self, token: str) -> bool:
+        """Whether the token is right, in a time that does not depend on its value."""
         return hmac.compare_digest(token.encode(), self.token.encode())

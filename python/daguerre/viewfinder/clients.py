@@ -18,7 +18,7 @@ class Line(Protocol):
 
 
 @dataclass(eq=False)
-class Guest:
+class Client:
     """A connected page.
 
     Attributes:
@@ -45,23 +45,25 @@ class Guest:
         await self.line.send(sheet.bytes)
 
 
-class Guests(list[Guest]):
+class Clients(list[Client]):
     """All pages, in the order of their connection."""
 
-    def join(self, line: Line) -> Guest:
+    def join(self, line: Line) -> Client:
         """Adds a page; the first page may turn the dials."""
-        guest = Guest(line, not any(other.turns for other in self))
-        self.append(guest)
-        return guest
+        client = Client(line, not any(other.turns for other in self))
+        self.append(client)
+        return client
 
-    async def leave(self, guest: Guest) -> None:
+    async def leave(self, client: Client) -> None:
         """Forgets a page; if it turned the dials, the next page does."""
-        self.remove(guest)
-        if guest.turns and self:
+        self.remove(client)
+        if client.turns and self:
             self[0].turns = True
             await self[0].tell({"role": "turns"})
 
-    async def tell(self, message: dict[str, Any], heard: Guest | None = None) -> None:
+    async def tell(self, message: dict[str, Any], heard: Client | None = None) -> None:
         """Sends all pages a message; for the page ``heard``, it is the answer to a request."""
         answer = message | {"heard": True}
-        await asyncio.gather(*(guest.tell(answer if guest is heard else message) for guest in self))
+        await asyncio.gather(
+            *(client.tell(answer if client is heard else message) for client in self)
+        )

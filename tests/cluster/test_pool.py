@@ -1,4 +1,4 @@
-"""The crew and the sharing of a picture, with workers in this process that do what a test wants."""
+"""The pool and the sharing of a picture, with workers in this process that do what a test wants."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import daguerre as dg
 from daguerre.cluster import sharing, store, workers
 from daguerre.cluster import task as on_worker
 from daguerre.cluster.answers import Failed, Needs, Sums, answer_of, head_line
-from daguerre.cluster.crew import Crew
+from daguerre.cluster.pool import WorkerPool
 from daguerre.cluster.spread import Spread
 from daguerre.cluster.work import work_of
 from daguerre.errors import InputError
@@ -38,13 +38,13 @@ def in_a_folder(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workers, "LOOK_S", 0.0)
 
 
-def drawn(crew: Crew, settings: dg.RenderSettings = HOW) -> dg.Frame:
-    """Picture that a crew draws."""
-    crew.workers.wait()
+def drawn(pool: WorkerPool, settings: dg.RenderSettings = HOW) -> dg.Frame:
+    """Picture that a pool draws."""
+    pool.workers.wait()
     made = scene()
     session = Session(made, made.camera(), settings=settings)
     sampling = settings.sampling
-    work = work_of(crew)(session, (0, sampling.most), sampling.noise, None)
+    work = work_of(pool)(session, (0, sampling.most), sampling.noise, None)
     assert Loop(session, work, Checkpoint(None), Reporter(), Control()).run()
     return session.frame()
 
@@ -63,7 +63,7 @@ def test_folded_or_not_the_bits_are_those_of_one_machine(
     monkeypatch.setattr(sharing, "ADDING", adding)
     monkeypatch.setattr(sharing, "TASK_S", 1e-4)
     fake = Fake([f"w{k}" for k in range(9)])
-    assert np.array_equal(drawn(Crew(fake), settings).rgb, alone(settings).rgb)
+    assert np.array_equal(drawn(WorkerPool(fake), settings).rgb, alone(settings).rgb)
     assert ("fold" in {what for _, what in fake.done}) == (adding < 1)
 
 
@@ -80,10 +80,10 @@ def test_workers_never_meter(monkeypatch: pytest.MonkeyPatch, mode: str) -> None
     monkeypatch.setattr(auto_exposure, "choose", counted)
     made = scene()
     camera = made.camera().with_(exposure=mode, shutter_time=None)
-    crew = Crew(Fake(["one", "two"]))
-    crew.workers.wait()
+    pool = WorkerPool(Fake(["one", "two"]))
+    pool.workers.wait()
     session = Session(made, camera, settings=HOW)
-    work = work_of(crew)(session, (0, 8), None, None)
+    work = work_of(pool)(session, (0, 8), None, None)
     assert Loop(session, work, Checkpoint(None), Reporter(), Control()).run()
     assert len(metered) == 1
     frame, by_one = session.frame(), dg.render(made, camera, settings=HOW.with_(spp=8))
@@ -103,9 +103,9 @@ def failed_on(bad: set[str], reason: str = "no space") -> PLAN:
 
 def test_a_failed_task_is_drawn_elsewhere() -> None:
     told: list[str] = []
-    crew = Crew(Fake(["good", "bad"], failed_on({"bad"})), tell=told.append)
-    assert np.array_equal(drawn(crew).rgb, alone().rgb)
-    assert crew.drawn_again > 0
+    pool = WorkerPool(Fake(["good", "bad"], failed_on({"bad"})), tell=told.append)
+    assert np.array_equal(drawn(pool).rgb, alone().rgb)
+    assert pool.drawn_again > 0
     assert "cluster: bad: no space; its task is drawn again elsewhere" in told
 
 
@@ -113,7 +113,7 @@ def test_what_fails_in_a_fold_is_drawn_again(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(sharing, "ADDING", 1e-9)
     monkeypatch.setattr(sharing, "TASK_S", 1e-4)
     fake = Fake([f"w{k}" for k in range(9)], failed_on({"w3"}))
-    assert np.array_equal(drawn(Crew(fake)).rgb, alone().rgb)
+    assert np.array_equal(drawn(WorkerPool(fake)).rgb, alone().rgb)
     assert "fold" in {what for _, what in fake.done}
 
 
@@ -123,11 +123,11 @@ def test_a_task_that_is_given_up_ends_the_render_when_all_else_is_drawn() -> Non
             return Failed(worker, "planted").to_bytes()
         return function(*given)
 
-    crew = Crew(Fake(["a", "b", "c", "d"], plan))
-    crew.workers.wait()
+    pool = WorkerPool(Fake(["a", "b", "c", "d"], plan))
+    pool.workers.wait()
     made = scene()
     session = Session(made, made.camera(), settings=HOW)
-    work = work_of(crew)(session, (0, 64), None, None)
+    work = work_of(pool)(session, (0, 64), None, None)
     wanted = r"cluster: samples 1:2 failed on \w, \w, \w: planted"
     with pytest.raises(InputError, match=wanted):
         Loop(session, work, Checkpoint(None), Reporter(), Control()).run()
@@ -138,7 +138,7 @@ def test_where_every_task_fails_the_render_ends_soon() -> None:
     names = ["a", "b", "c", "d"]
     fake = Fake(names, failed_on(set(names)))
     with pytest.raises(InputError, match=r"no space; in all, samples 0:\d were not drawn"):
-        drawn(Crew(fake))
+        drawn(WorkerPool(fake))
     assert len(fake.done) < 60  # of 3 x 64
 
 
@@ -155,12 +155,12 @@ def test_a_worker_whose_disk_is_full_draws_nothing() -> None:
         return function(*given)
 
     told: list[str] = []
-    crew = Crew(Full(["good", "full"], plan), tell=told.append)
-    assert np.array_equal(drawn(crew).rgb, alone().rgb)
-    assert crew.workers.good == {"good"}
+    pool = WorkerPool(Full(["good", "full"], plan), tell=told.append)
+    assert np.array_equal(drawn(pool).rgb, alone().rgb)
+    assert pool.workers.good == {"good"}
     assert sum("No space left on device; this worker is not used" in text for text in told) == 1
     with pytest.raises(InputError, match="failed on full: /values: cannot write: No space left"):
-        drawn(Crew(Full(["full"], plan)))
+        drawn(WorkerPool(Full(["full"], plan)))
 
 
 def test_a_worker_that_goes_while_it_gets_values_costs_nothing() -> None:
@@ -171,30 +171,30 @@ def test_a_worker_that_goes_while_it_gets_values_costs_nothing() -> None:
                 return {"going": OSError("connection lost")}
             return super().run(function, *given, workers=workers)
 
-    crew = Crew(Going(["good", "going"]))
-    assert np.array_equal(drawn(crew).rgb, alone().rgb)
+    pool = WorkerPool(Going(["good", "going"]))
+    assert np.array_equal(drawn(pool).rgb, alone().rgb)
 
 
 def test_a_late_task_is_drawn_twice_and_counts_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sharing, "STEP_S", 0.05)
     fake = Fake(["quick", "slow"], slow={"slow": 60.0})
     began = time.monotonic()
-    assert np.array_equal(drawn(Crew(fake)).rgb, alone().rgb)
+    assert np.array_equal(drawn(WorkerPool(fake)).rgb, alone().rgb)
     assert time.monotonic() - began < 30
     assert fake.gone  # the task of the slow worker
 
 
 def test_a_late_answer_of_a_worker_thought_dead_counts_once() -> None:
     fake = Fake(["a", "b"])
-    crew = Crew(fake)
-    crew.workers.wait()
+    pool = WorkerPool(fake)
+    pool.workers.wait()
     made = scene()
     session = Session(made, made.camera(), settings=HOW)
-    work: Any = work_of(crew)(session, (0, 64), None, None)
+    work: Any = work_of(pool)(session, (0, 64), None, None)
     while session.ranges != [(0, 64)]:
         assert work.prepare(1.0)
-        for flight in list(crew.flights):  # each comes a second time
-            crew.begin(flight.task)
+        for submission in list(pool.submissions):  # each comes a second time
+            pool.begin(submission.task)
         work.draw(lambda fraction: True)
     assert np.array_equal(session.frame().rgb, alone().rgb)
 
@@ -209,12 +209,12 @@ def test_workers_of_another_build_draw_nothing() -> None:
 
     told: list[str] = []
     fake = Mixed(["good", "old", "bare"])
-    assert np.array_equal(drawn(Crew(fake, tell=told.append)).rgb, alone().rgb)
+    assert np.array_equal(drawn(WorkerPool(fake, tell=told.append)).rgb, alone().rgb)
     assert {name for name, _ in fake.done} == {"good"}
     assert any(f"old: build: wanted the same as the client's, {build()}" in text for text in told)
     assert any("bare: it has no daguerre of this version" in text for text in told)
     with pytest.raises(InputError, match="no worker can draw: old: build"):
-        drawn(Crew(Mixed(["old"])))
+        drawn(WorkerPool(Mixed(["old"])))
 
 
 def test_wrong_sums_refuse_their_worker() -> None:
@@ -229,9 +229,9 @@ def test_wrong_sums_refuse_their_worker() -> None:
         return data
 
     told: list[str] = []
-    crew = Crew(Fake(["good", "liar"], plan), tell=told.append)
-    assert np.array_equal(drawn(crew).rgb, alone().rgb)
-    assert crew.workers.good == {"good"}
+    pool = WorkerPool(Fake(["good", "liar"], plan), tell=told.append)
+    assert np.array_equal(drawn(pool).rgb, alone().rgb)
+    assert pool.workers.good == {"good"}
     assert any("liar: scene: wanted the same as the client's" in text for text in told)
 
 
@@ -245,30 +245,30 @@ def test_damaged_answers_are_drawn_again() -> None:
             return bytes(data[:-1]) + bytes([data[-1] ^ 1])
         return data
 
-    crew = Crew(Fake(["a", "b", "c", "d"], plan))
-    assert np.array_equal(drawn(crew).rgb, alone().rgb)
+    pool = WorkerPool(Fake(["a", "b", "c", "d"], plan))
+    assert np.array_equal(drawn(pool).rgb, alone().rgb)
     assert len(spoilt) == 2
 
 
 def test_no_worker_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workers, "PATIENCE_S", 0.1)
     with pytest.raises(InputError, match=r"tcp://127.0.0.1:1: wanted a worker within 0.1 s"):
-        drawn(Crew(Fake([])))
+        drawn(WorkerPool(Fake([])))
 
 
 def test_tasks_bound_to_a_worker_that_goes_begin_anew() -> None:
     fake = Fake(["a", "b", "c"], failed_on({"b"}), slow={"c": 1e9})
-    crew = Crew(fake)
-    crew.workers.wait()
+    pool = WorkerPool(fake)
+    pool.workers.wait()
     made = scene()
     session = Session(made, made.camera(), settings=HOW)
-    place = crew.values.keep(session.scene), crew.values.keep((session.camera, HOW, None))
-    flight = crew.begin(on_worker.Task(*place, 0, 1), but={"a", "b"})
-    assert flight.only == {"c"}
+    place = pool.values.keep(session.scene), pool.values.keep((session.camera, HOW, None))
+    submission = pool.begin(on_worker.Task(*place, 0, 1), but={"a", "b"})
+    assert submission.only == {"c"}
     fake.names.remove("c")
-    crew.look()
-    assert [one.task for one in crew.flights] == [flight.task]
-    assert not crew.flights[0].only
+    pool.look()
+    assert [one.task for one in pool.submissions] == [submission.task]
+    assert not pool.submissions[0].only
 
 
 def test_pictures_of_a_sequence_go_to_a_worker_each(tmp_path: Path) -> None:
@@ -287,9 +287,9 @@ def test_pictures_of_a_sequence_go_to_a_worker_each(tmp_path: Path) -> None:
 
     fake = Fake(["a", "b", "c"])
     fake.plan = plan
-    crew, many = Crew(fake), job("many")
-    crew.workers.wait()
-    many.work_of = work_of(crew, many)
+    pool, many = WorkerPool(fake), job("many")
+    pool.workers.wait()
+    many.work_of = work_of(pool, many)
     assert many.run()
     assert job("alone").run()
     for frame in range(1, 8):
@@ -300,10 +300,10 @@ def test_pictures_of_a_sequence_go_to_a_worker_each(tmp_path: Path) -> None:
     by_one = [names for names in drew.values() if len(set(names)) == 1]
     assert len(by_one) >= 4  # the last ones are drawn by whoever is idle
     assert {names[0] for names in by_one} == {"a", "b", "c"}
-    assert len(crew.values._kept) == 2  # scene and view of the last one
+    assert len(pool.values._kept) == 2  # scene and view of the last one
 
 
-@pytest.mark.parametrize("slow", [{}, {"a": 0.5, "b": 0.5}], ids=["landed", "under way"])
+@pytest.mark.parametrize("slow", [{}, {"a": 0.5, "b": 0.5}], ids=["done", "under way"])
 def test_workers_do_the_pilot_renders_of_pictures_to_come(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, slow: dict[str, float]
 ) -> None:
@@ -325,9 +325,9 @@ def test_workers_do_the_pilot_renders_of_pictures_to_come(
     settings = HOW.with_(spp=1, light_paths="auto")
     pictures = in_order([Picture(View(), settings, Output((tmp_path / "a.#.exr",)))], range(1, 6))
     job, fake = Job(scene(), pictures), Fake(["a", "b"], plan, slow)
-    crew = Crew(fake)
-    crew.workers.wait()
-    job.work_of = work_of(crew, job)
+    pool = WorkerPool(fake)
+    pool.workers.wait()
+    job.work_of = work_of(pool, job)
     assert job.run()
     assert pilots[0] == "client"
     assert "client" not in pilots[1:]
@@ -341,11 +341,11 @@ def test_a_stop_ends_the_wait_for_a_pilot_render(tmp_path: Path) -> None:
 
     picture = Picture(View(), HOW.with_(spp=1), Output((tmp_path / "a.#.exr",)))
     job = Job(scene(), in_order([picture], range(1, 4)), control=Stopping())
-    crew = Crew(Fake(["a"], slow={"a": 60.0}))
-    crew.workers.wait()
-    spread = Spread(crew, job)
+    pool = WorkerPool(Fake(["a"], slow={"a": 60.0}))
+    pool.workers.wait()
+    spread = Spread(pool, job)
     session = job.open(job.pictures[0])
-    sharing_ = sharing.Sharing(session, crew, spread.open(session))
+    sharing_ = sharing.Sharing(session, pool, spread.open(session))
     spread.fill(sharing_, (0, 1), [])
     began = time.monotonic()
     assert spread.piloted(job.pictures[1]) is None
@@ -354,52 +354,54 @@ def test_a_stop_ends_the_wait_for_a_pilot_render(tmp_path: Path) -> None:
 
 
 def test_tasks_are_long_if_their_answers_are_work() -> None:
-    crew = Crew(Fake(["a", "b"]))
-    crew.workers.wait()
+    pool = WorkerPool(Fake(["a", "b"]))
+    pool.workers.wait()
     made = scene()
-    session, spread = Session(made, made.camera(), settings=HOW), Spread(crew)
-    one = sharing.Sharing(session, crew, spread.open(session))
+    session, spread = Session(made, made.camera(), settings=HOW), Spread(pool)
+    one = sharing.Sharing(session, pool, spread.open(session))
     assert one.size(1e9) == 1  # nothing is known
-    crew.per_second = 2.0
+    pool.per_second = 2.0
     assert one.size(1e9) == 2 * sharing.TASK_S
-    crew.answer_s = 3.0
+    pool.answer_s = 3.0
     assert one.size(1e9) == 2 * sharing.WORTH * 3
-    crew.answer_s = 100.0
+    pool.answer_s = 100.0
     assert one.size(1e9) == 2 * sharing.LONG_S
-    crew.answer_s = 0.1
+    pool.answer_s = 0.1
     assert one.size(20) == 5  # two for each worker
-    crew.answer_s = 0.4
+    pool.answer_s = 0.4
     assert one.size(20) == 2 * sharing.LAST_WORTH * 0.4  # a shorter one would not pay
-    crew.answer_s = 3.0
+    pool.answer_s = 3.0
     assert one.size(20) == 10  # none is idle
 
 
 def test_a_remnant_is_no_task_of_its_own() -> None:
-    crew = Crew(Fake(["a"]))
-    crew.workers.wait()
+    pool = WorkerPool(Fake(["a"]))
+    pool.workers.wait()
     made = scene()
-    session, spread = Session(made, made.camera(), settings=HOW), Spread(crew)
-    one = sharing.Sharing(session, crew, spread.open(session))
+    session, spread = Session(made, made.camera(), settings=HOW), Spread(pool)
+    one = sharing.Sharing(session, pool, spread.open(session))
     for last, wanted in ((4, [(0, 4)]), (11, [(0, 3), (3, 6)])):
         with mock.patch.object(one, "size", return_value=3.0):
             spread.fill(one, (0, last), [])
-        assert [(flight.task.begin, flight.task.end) for flight in crew.flights] == wanted
-        crew.drop_all()
+        assert [
+            (submission.task.begin, submission.task.end) for submission in pool.submissions
+        ] == wanted
+        pool.drop_all()
 
 
 def test_answers_of_workers_that_the_client_cannot_reach_come_through_the_scheduler() -> None:
     fake = Fake(["a", "b"], reached=["a"])  # the fake checks which way is taken
-    assert np.array_equal(drawn(Crew(fake)).rgb, alone().rgb)
+    assert np.array_equal(drawn(WorkerPool(fake)).rgb, alone().rgb)
 
 
 def test_a_wish_for_values_of_a_picture_to_come_is_served_at_once() -> None:
-    crew = Crew(Fake(["a"]))
-    crew.workers.wait()
+    pool = WorkerPool(Fake(["a"]))
+    pool.workers.wait()
     made = scene()
-    keep = crew.values.keep
-    flight = crew.begin(on_worker.Task(keep(made), keep((made.camera(), HOW, None)), 0, 1))
-    assert flight.has_words
-    crew.serve()
-    (again,) = crew.flights
-    assert again.task == flight.task
+    keep = pool.values.keep
+    submission = pool.begin(on_worker.Task(keep(made), keep((made.camera(), HOW, None)), 0, 1))
+    assert submission.has_words
+    pool.serve()
+    (again,) = pool.submissions
+    assert again.task == submission.task
     assert again.has_sums
