@@ -23,7 +23,7 @@ export class Beside {
   }
 
   choose(value) {
-    this.update(this.view.state);   // the option says what is shown, not what was asked for
+    this.update(this.view.state);   // the option names the shown picture, not the requested one
     if (value === PICK) this.view.pickOther();
     else this.show(value && JSON.parse(value));
   }
@@ -90,7 +90,7 @@ export class Beside {
 
 const stopsOver = (other, stop) => 2 * Math.log2(other / stop);
 
-/** How far a stop is from another, in thirds, such as "2 stops narrower". */
+/** Difference of two stops, in thirds, such as "2 stops narrower". */
 function apart(other, stop) {
   const thirds = Math.round(3 * stopsOver(other, stop)), count = Number((Math.abs(thirds) / 3).toFixed(1));
   return `${count} ${count === 1 ? 'stop' : 'stops'} ${thirds > 0 ? 'narrower' : 'wider'}`;

@@ -25,7 +25,7 @@ export class Choices {
   }
 }
 
-/** Shows a value in a select, unless it is the user who chooses there. */
+/** Shows a value in a select, unless the user is choosing there. */
 export function showChosen(view, id, value) {
   const select = view.find(id);
   if (view.current || view.root.activeElement !== select) select.value = value;

@@ -1,4 +1,4 @@
-// compare.js -- the picture at rest before this one, while its button is held.
+// compare.js -- shows the previous picture at rest, while its button is held.
 
 import {metres, shutterLabel} from './scales.js';
 
@@ -8,7 +8,7 @@ export class Compare {
   constructor(view) {
     this.view = view;
     this.rest = null;     // the newest picture at rest: its turn, sheet, and settings in words
-    this.before = null;   // the one at rest before
+    this.before = null;   // the previous picture at rest
     this.button = view.find('compare');
     const on = (names, act) => names.forEach((name) => this.button.addEventListener(name, act));
     on(['pointerdown'], (event) => this.hold(event));

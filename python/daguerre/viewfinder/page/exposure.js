@@ -1,4 +1,4 @@
-// exposure.js -- what sets the brightness: mode, pattern of the meter, lock.
+// exposure.js -- controls of the brightness: mode, pattern of the meter, lock.
 
 import {showChosen} from './choices.js';
 import {fill, press, title} from './dom.js';
@@ -17,7 +17,7 @@ export class Exposure {
     view.find('lock').addEventListener('click', () => this.lock());
   }
 
-  /** Mode and pattern; a pattern that is not offered, such as a spot on a node, was given. */
+  /** Mode and pattern, also a pattern of the command line that is not offered, such as a spot on a node. */
   update({mode, pattern}) {
     const {view} = this, offered = view.open.meters;
     const patterns = offered.includes(pattern) ? offered : [...offered, pattern];
@@ -32,7 +32,7 @@ export class Exposure {
     title(button, locked ? `Meter again, in mode ${letterOf(locked)}` : meters ? LOCKS : `No meter sets anything in ${letterOf(mode)}`);
   }
 
-  /** Keeps what the meter chose, or meters again. */
+  /** Keeps the exposure that the meter chose, or meters again. */
   lock() {
     if (this.mode === 'manual') {
       this.view.turn({exposure: this.locked});

@@ -1,4 +1,4 @@
-// guides.js -- the frame of another aspect, such as a film's; what is outside is dark.
+// guides.js -- the frame of another aspect, such as a film's; the picture outside is dark.
 
 import {recall, remember} from './memory.js';
 

@@ -1,4 +1,4 @@
-// hint.js -- says over the picture what a hand can do there, until the first time that one does.
+// hint.js -- a hint over the picture on its gestures, until the first gesture.
 
 import {recall, remember} from './memory.js';
 
@@ -19,7 +19,7 @@ export class Hint {
     remember('hint', true);
   }
 
-  /** Only a page that turns the rings can act on it. */
+  /** Only a page that may turn the dials shows the hint. */
   told({role}) {
     if (role) this.hint.hidden = this.known || role !== 'turns';
   }

@@ -56,7 +56,7 @@ export class Keys {
     event.stopPropagation();   // a notebook has keys of its own
   }
 
-  /** Acts on a key; whether it is one of the table, and its control can be used. */
+  /** Acts on a key; returns whether the table has the key and its control can be used. */
   press(event) {
     const [, selector, held] = KEYS.find(([key]) => key.toLowerCase() === nameOf(event)) ?? [];
     const control = selector && this.root.querySelector(selector);

@@ -49,7 +49,7 @@ export class LensFilters {
     return Object.keys(FITS).filter((id) => this.find(id).value).length;
   }
 
-  /** Offers what the lenses have. */
+  /** Fills the menus of the filters from the facts of the lenses. */
   know(lenses) {
     const known = lenses.filter((lens) => lens.kinds);
     const kinds = new Set(known.flatMap((lens) => lens.kinds));

@@ -1,4 +1,4 @@
-// lens_picker.js -- the dialog of lenses: photographs, filters and the library's search; one is chosen.
+// lens_picker.js -- the dialog to choose a lens: photographs, filters and the library's search.
 //
 // Another part may set `view.compareWith(name)`: the dialog then offers to compare the chosen lens.
 
@@ -14,7 +14,7 @@ export class LensPicker {
     this.find = view.find;
     this.titles = [];     // of all lenses: {name, title}
     this.lenses = null;   // with their facts, once the dialog has asked for them
-    this.hits = null;     // what the server has found for the words; null: nothing yet
+    this.hits = null;     // lenses that the server found for the words; null: no answer yet
     this.chosen = null;
     this.cards = new LensCards(view, (lens) => this.choose(lens), () => this.use());
     this.filters = new LensFilters(view, () => this.search());
@@ -36,7 +36,7 @@ export class LensPicker {
     return this.lenses?.find((lens) => lens.name === this.chosen);
   }
 
-  // What the server tells
+  // Messages of the server
 
   opened({lenses}) {
     this.titles = [{name: null, title: 'as in the scene'}, ...lenses];
@@ -70,7 +70,7 @@ export class LensPicker {
 
   // The list
 
-  /** Opens the dialog, to choose the camera's lens or one to compare with it. */
+  /** Opens the dialog, to choose the camera's lens or a lens to compare with it. */
   open(compares = false) {
     this.compares = compares;
     this.find('lens-take').hidden = compares;

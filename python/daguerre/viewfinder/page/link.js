@@ -3,7 +3,7 @@
 const RETRY_MS = [200, 500, 1000, 2000];
 const SILENCE_MS = 25000;   // the server pings; a socket that is silent longer is dead
 
-/** Head and bytes of a picture's message, a Uint8Array; its tint, if it has one, gets its own bytes. */
+/** Head and bytes of a picture's message, a Uint8Array; the tint, if any, gets separate bytes. */
 export function unpack(message) {
   const length = new DataView(message.buffer, message.byteOffset, 4).getUint32(0, true);
   const head = JSON.parse(new TextDecoder().decode(message.subarray(4, 4 + length)));

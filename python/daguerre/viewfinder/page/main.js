@@ -1,7 +1,7 @@
 // main.js -- the page: connects its parts with the server.
 //
 // Each part is one module with a class, made once and listed in `parts`. It gets the viewfinder, and may have
-//   opened(found)    what the stage offers: lenses, sensors, cameras, times
+//   opened(found)    facts of the stage: lenses, sensors, cameras, times
 //   update(state)    the dials, the readings and the right to turn have changed
 //   shown(head)      a picture is on the screen
 //   told(message)    any message of the server
@@ -46,11 +46,11 @@ class Viewfinder {
   constructor(root, makeLink) {
     this.root = root;
     this.find = (id) => root.getElementById(id);
-    this.open = null;    // what the stage offers
+    this.open = null;    // facts of the stage
     this.state = null;   // dials and readings
     this.mine = false;   // whether this page may turn
     this.unsent = null;   // turns to send
-    this.sent = false;   // whether some were sent whose picture has not come
+    this.sent = false;   // whether turns were sent and their picture has not come
     this.newest = -1;    // turn of the newest picture
     this.unheard = 0;    // changes that the server has not answered yet
     const canvas = this.find('picture');
@@ -72,7 +72,7 @@ class Viewfinder {
     this.find('reload').addEventListener('click', () => this.send({reload: true}));
   }
 
-  /** Sends a message, after what was turned before. */
+  /** Sends a message, after unsent turns. */
   send(message) {
     if (this.unsent && !message.got && !message.probe) this.sendTurn();
     if (CHANGES.some((name) => name in message)) this.unheard++;
@@ -81,8 +81,8 @@ class Viewfinder {
   }
 
   /**
-   * Sends turns at once, and further ones when a picture of those is drawn, the newest of each dial: a turn ends
-   * the work on the one before, so that faster ones would leave a hand that moves without pictures.
+   * Sends turns at once, and later turns when a picture of the sent turns is drawn, the newest of each dial. Each
+   * turn ends the work on the previous turn, so faster turns would show no pictures while a dial moves.
    */
   turn(dials) {
     this.unsent = {...this.unsent, ...dials};
@@ -99,9 +99,10 @@ class Viewfinder {
     this.patience = setTimeout(() => this.sendTurn(), PATIENCE_MS);
   }
 
-  /** Whether the readings are those of all that was turned; if not, what was turned stays where it is. */
+  /** Whether the readings belong to the newest turn; if not, turned dials keep their positions. */
   get current() {
-    return this.unsent === null && this.unheard === 0 && (this.state.read === this.state.turn || this.state.error !== '');
+    if (this.unsent !== null || this.unheard > 0) return false;
+    return this.state.read === this.state.turn || this.state.error !== '';
   }
 
   /** Tells screen readers whether the picture still changes. */
@@ -188,7 +189,7 @@ class Viewfinder {
     this.tell('update', this.state);
   }
 
-  /** Offers a click on the picture to the parts, until one takes it. */
+  /** Offers a click on the picture to the parts, until a part takes it. */
   clicked(event) {
     if (!this.open) return;
     const {pixel} = this.picture.at(event);

@@ -1,4 +1,4 @@
-// memory.js -- what the page itself remembers over a reload; a browser may bar it.
+// memory.js -- values that the page keeps over a reload, in session storage; a browser may forbid it.
 
 const PREFIX = 'daguerre-viewfinder:';
 

@@ -1,4 +1,4 @@
-// mode_dial.js -- the mode dial of the camera: one of P, A, S, M, auto and light.
+// mode_dial.js -- the mode dial of the camera: P, A, S, M, auto or light.
 
 const MODES = {
   P: ['P', 'Program: the meter sets time and f-stop'],

@@ -1,4 +1,4 @@
-// output.js -- what is taken home: the command, the samples to draw, saved files.
+// output.js -- output: the command line of the picture, the samples to draw, saved files.
 
 const COPIED_MS = 1500;
 

@@ -1,4 +1,4 @@
-// panels.js -- panels beside the picture, such as Rays: one is open at a time.
+// panels.js -- panels beside the picture, such as Rays; at most a single panel is open.
 //
 // A panel is `<section class="panel" id="NAME" aria-label="..." hidden>` in `#panels`. A button with
 // `data-panel="NAME"` opens and closes it, as does `open`. Escape and its own button close it. The panel
@@ -28,7 +28,7 @@ export class Panels {
     this.open(recall('panel', null));
   }
 
-  /** Opens a panel instead of the one before; null: none. */
+  /** Opens a panel in place of the open panel; null: closes it. */
   open(name) {
     const [before, now] = [this.shown, name].map((one) => this.root.getElementById(one ?? ''));
     if (name && !now?.classList.contains('panel')) return;   // remembered by another version

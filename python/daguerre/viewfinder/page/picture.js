@@ -1,4 +1,4 @@
-// picture.js -- the canvas: the picture, and what photographers lay over it.
+// picture.js -- the canvas: the picture and its overlays.
 
 import {marks} from './marks.js';
 
@@ -12,7 +12,7 @@ export class Picture {
     this.tint = tint;
     this.context = canvas.getContext('2d', {willReadFrequently: true});
     this.head = null;
-    this.sheet = null;   // what is shown: a bitmap, its tint, and how many pictures it has side by side
+    this.sheet = null;   // shown picture: bitmap, tint, and number of pictures side by side
     this.divider = 0.5;   // share of the width on its left
     this.clean = null;   // head of the picture on the screen, if it is denoised
     this.shows = {grid: false, horizon: false, zebra: false, peaking: false};
@@ -25,7 +25,7 @@ export class Picture {
   async show(head, bytes) {
     const decode = (data) => (data?.length ? decoded(head.kind, data, head.size) : null);
     const [bitmap, tint] = await Promise.all([decode(bytes), decode(head.tint?.bytes)]);
-    if (this.head && head.picture < this.head.picture) return false;   // a newer one was faster
+    if (this.head && head.picture < this.head.picture) return false;   // a newer picture came first
     if (keeps(this.clean, head)) {
       this.head = head;
       return true;
@@ -50,7 +50,7 @@ export class Picture {
     return this.clean !== null;
   }
 
-  /** Draws a picture at the size of the one at rest; smaller ones look soft, not like blocks. */
+  /** Draws a picture at its size at rest; smaller pictures are interpolated, not drawn as blocks. */
   draw(sheet) {
     const {columns, rows} = cells(sheet.divided ? 1 : sheet.count);
     this.paint(this.context, sheet.bitmap, sheet, columns, rows);
@@ -164,7 +164,7 @@ export class Picture {
     context.stroke();
   }
 
-  /** Under a pointer: pixel of the whole picture, number of the one of several pictures, pixel of the canvas. */
+  /** Under a pointer: pixel of the whole picture, number of the picture among several, pixel of the canvas. */
   at({clientX, clientY}) {
     const {canvas, head, whole} = this, box = canvas.getBoundingClientRect();
     const {columns, rows} = cells(head?.divided ? 1 : head?.panels.length);
@@ -179,7 +179,7 @@ export class Picture {
   }
 }
 
-/** Whether a denoised picture on the way stays until the next one is denoised, too: noise must not come and go. */
+/** Whether a denoised picture stays until the next is denoised, too: noise must not come and go. */
 function keeps(clean, head) {
   return clean !== null && head.previews && !head.rests && !head.denoised && clean.turn === head.turn
     && clean.tint?.kind === head.tint?.kind && head.samples <= 2 * clean.samples;

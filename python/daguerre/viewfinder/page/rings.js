@@ -1,4 +1,4 @@
-// rings.js -- the rings of the camera: which there are, what each shows and turns.
+// rings.js -- the rings of the camera: their list, shown values and turned dials.
 
 import {fill, press, pressed} from './dom.js';
 import {recall, remember} from './memory.js';
@@ -87,7 +87,7 @@ export class Rings {
     });
   }
 
-  /** What a ring shows of its dials; the first one is what it turns. */
+  /** Dials that a ring shows; the ring turns the first. */
   ringOf(dials, dial, ...others) {
     const names = [dial, ...others].sort();
     const of = (texts) => Object.fromEntries(names.map((name) => [name, texts[name] ?? null]));
@@ -102,7 +102,7 @@ export class Rings {
   play(on) {
     clearInterval(this.player);
     const {view} = this;
-    view.holdPlay(on);   // all of it is one step
+    view.holdPlay(on);   // a play is a single undo step
     if (!on) return;
     const {duration_s: duration} = view.open, {fps} = view.state.readings;
     let shown = -1;

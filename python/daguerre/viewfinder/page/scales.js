@@ -1,7 +1,7 @@
 // scales.js -- scales of the rings: where a value lies on its ring, its marks, its text.
 //
 // A scale maps a value to a position: one step of the ring (a third of a stop, say) is a fixed
-// length, as engraved on a barrel. `text` is what the command line takes, `label` what people read.
+// length, as engraved on a barrel. `text` is for the command line, `label` for people.
 
 const round = (value, digits) => Number(value.toPrecision(digits));
 const FEET = 1 / 0.3048;
@@ -89,7 +89,7 @@ function logScale(values, {text, label, mark}) {
   };
 }
 
-/** Fractional index of a value among rising or falling ones. */
+/** Fractional index of a value among rising or falling values. */
 function place(logs, value) {
   const way = Math.sign(logs.at(-1) - logs[0]) || 1;
   for (let i = 0; i + 1 < logs.length; i++) {

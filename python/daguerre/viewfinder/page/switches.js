@@ -18,7 +18,7 @@ export class Switches {
     }
   }
 
-  /** Turns one on, as it was when the page opened if it was on, or off. */
+  /** Turns a switch off, or on: with its value at the opening of the page, if it was on. */
   turn(dial, on) {
     const {open: {dials, lit}} = this.view, switched = SWITCHES[dial];
     if (!on) return this.view.turn({[dial]: lit.includes(dial) ? switched.off : null});

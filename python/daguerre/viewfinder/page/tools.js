@@ -1,4 +1,4 @@
-// tools.js -- the buttons under the picture: what lies over it, how it is shown, where the camera stands.
+// tools.js -- the buttons under the picture: overlays, display, position of the camera.
 
 import {press, pressed, title} from './dom.js';
 import {recall, remember} from './memory.js';

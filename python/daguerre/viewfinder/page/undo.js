@@ -1,4 +1,4 @@
-// undo.js -- undo and redo; what is dragged without letting go is one step.
+// undo.js -- undo and redo; a drag without letting go is a single step.
 
 export class Undo {
   constructor(view) {
@@ -19,7 +19,7 @@ export class Undo {
     else requestAnimationFrame(() => this.view.send({hold: false}));
   }
 
-  /** What plays is one gesture, also if something else is dragged meanwhile. */
+  /** A play is a single gesture, also if another dial is dragged meanwhile. */
   holdPlay(on) {
     this.plays = false;
     this.hold(on);

@@ -20,7 +20,7 @@ class KernelLink {
   }
 }
 
-/** Bytes of a buffer of the kernel: an ArrayBuffer or a view of one. */
+/** Bytes of a buffer of the kernel: an ArrayBuffer or a view of a buffer. */
 function bytesOf(buffer) {
   return new Uint8Array(buffer.buffer ?? buffer, buffer.byteOffset ?? 0, buffer.byteLength);
 }
