@@ -63,7 +63,7 @@ class GhostRays(BriefRecord):
 
     @cached_property
     def middle(self) -> FloatArray:
-        """A ray that passes, in the middle of those that do, shape (4,).
+        """A ray in the middle of the rays that pass, shape (4,).
 
         Raises:
             InputError: No ray passes.

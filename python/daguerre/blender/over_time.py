@@ -30,7 +30,7 @@ def moving_camera(camera: Camera, moments: Moments, time: float) -> Camera:
 
 
 def _changing(moments: Moments, names: Sequence[str]) -> dict[str, Any]:
-    """Fields that differ between moments, as keys; those that are nothing at some are constant."""
+    """Fields that differ between moments, as keys; a field that is None at a moment is constant."""
     found = {}
     for name in names:
         pairs = [(t, getattr(value, name)) for t, value in moments]

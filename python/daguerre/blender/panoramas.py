@@ -40,7 +40,7 @@ def panorama_of(data: bpy.types.Camera, film: Film, where: str, notes: Notes) ->
         notes: Receives notes on unsupported content.
 
     Raises:
-        InputError: There is no such projection here; the message names those that there are.
+        InputError: The projection is not supported; the message names the supported projections.
     """
     make = _MAKERS.get(data.panorama_type)
     if make is None:

@@ -20,7 +20,7 @@ Path = Sequence[tuple[float, Matrix]]
 
 @dataclass
 class _Copies:
-    """Places of one mesh with one material and name; those that rest, and those that move."""
+    """Places of a mesh with the same material and name, at rest and moving."""
 
     still: list[Matrix] = field(default_factory=list)
     moving: list[Keys] = field(default_factory=list)

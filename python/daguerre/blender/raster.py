@@ -44,7 +44,7 @@ class Raster:
         return np.count_nonzero(self.covers > 1) / covered if covered else 0.0
 
     def values(self, corners: NDArray[Any]) -> NDArray[np.float32]:
-        """Values at all texels, shape (H, W, K), of those at corners, shape (T, 3, K)."""
+        """Interpolates values at corners, shape (T, 3, K), to all texels, shape (H, W, K)."""
         found = np.zeros((*self.triangle.shape, corners.shape[2]), np.float32)
         inside = self.inside
         triangle = self.triangle[inside]

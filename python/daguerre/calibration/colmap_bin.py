@@ -23,7 +23,7 @@ NAMES = (
     *("FULL_OPENCV", "FOV", "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE", "THIN_PRISM_FISHEYE"),
     "RAD_TAN_THIN_PRISM_FISHEYE",
 )
-#: Largest file, most of which are points, and longest name of a picture, bytes.
+#: Largest file (mostly points), and longest name of a picture, bytes.
 MAX_BYTES, _LONGEST_NAME = 1 << 33, 4096
 _POINT_BYTES = 24
 

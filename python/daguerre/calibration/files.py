@@ -54,7 +54,7 @@ def format_of(source: Source) -> str:
     """Format of a file, recognized by the names in it.
 
     Raises:
-        InputError: It is of no known format; the message names those that are read.
+        InputError: The format is unknown; the message names the known formats.
     """
     if colmap.is_colmap(source):
         return "colmap"

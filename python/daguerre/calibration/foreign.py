@@ -15,7 +15,7 @@ READ = (
     "basalt, BOP camera.json, KITTI, OpenTrackIO, a folder of COLMAP, transforms.json"
 )
 _START = 1 << 16
-#: Members of samples, of which OpenTrackIO has lists.
+#: Members of OpenTrackIO samples, the only lists that are read.
 _SAMPLE = re.compile(rb'"(timing|protocol|static|lens)"')
 #: Pattern in the first bytes of a file, name of its program, and how to convert the file.
 _SIGNS = (

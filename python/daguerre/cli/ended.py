@@ -13,7 +13,7 @@ _got: list[str] = []
 
 
 def by_signals() -> None:
-    """Lets the signals end the command; those that are ignored, as by nohup, stay so."""
+    """Lets the signals end the command; a signal that is ignored, as by nohup, stays ignored."""
     for name in ("SIGTERM", "SIGHUP"):
         number = getattr(signal, name, None)  # Windows has no SIGHUP
         if number is not None and signal.getsignal(number) == signal.SIG_DFL:

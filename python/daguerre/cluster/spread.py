@@ -125,7 +125,7 @@ class Spread:
             yield number
 
     def _free(self, wanted: Range, known: Sequence[Range]) -> dict[int, list[Range]]:
-        """Samples that nobody draws, by the number of the picture."""
+        """Samples that no worker draws, by the number of the picture."""
         taken = defaultdict(list)
         for one in self.pool.submissions:
             taken[one.task.scene, one.task.view].append((one.task.begin, one.task.end))

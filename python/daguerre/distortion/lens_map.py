@@ -139,7 +139,7 @@ class LensMap(Distortion):
         return np.where(good[:, None], at * self._half, np.nan)
 
     def _slopes(self, at: FloatArray) -> FloatArray:
-        """Derivatives of the cosines by scaled points, shape (N, 2, 2), last axis the latter."""
+        """Derivatives of the cosines by scaled points, shape (N, 2, 2); last axis: points."""
         parts = [_values(np.asarray(chebyshev.chebder(self._fit, axis=k)), at) for k in (0, 1)]
         return np.stack(parts, axis=2)
 

@@ -35,7 +35,7 @@ def in_light(metadata: Mapping[str, Any]) -> bool:
 
 
 def is_developed(metadata: Mapping[str, Any]) -> bool:
-    """Whether pictures of a frame are developed: all but those in ``light`` without a white.
+    """Whether pictures of a frame are developed: all except in ``light`` without a white.
 
     A frame without a mode, such as another program's, is shown as it is.
     """

@@ -7,7 +7,7 @@ import math
 from .metering import ev100_of
 
 NO_LIGHT = "no light to meter, so the exposure mode is light"
-#: Stops that nobody sees.
+#: Largest difference in stops that is not visible.
 _SLIGHT = 0.05
 
 

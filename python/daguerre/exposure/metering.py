@@ -33,7 +33,7 @@ K = 12.5
 CENTER_SHARE, CENTER_DIAMETER = 0.75, 0.5
 #: Spot: a circle of this share of the frame's area.
 SPOT_AREA = 0.025
-#: Matrix: zones across and down; weight of those at the point in focus.
+#: Matrix: zones across and down; weight of zones at the point in focus.
 ZONES, FOCUS_WEIGHT = (9, 7), 3.0
 #: A zone this many times as bright as middle grey is white; it may cost the rest one stop at most.
 WHITE_OVER_GREY, MOST_PROTECTION = 1 / GREY, 2.0

@@ -65,7 +65,7 @@ class Origin(NamedTuple):
     keeps_line: bool = False
 
 
-#: A lens of which nothing is known.
+#: A lens without known facts.
 ANY = Origin()
 
 

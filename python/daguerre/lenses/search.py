@@ -98,7 +98,7 @@ def ranked(text: str, subjects: Iterable[Subject]) -> list[str]:
     """Names of the lenses that have all words of a text, best match first."""
     listed, words = list(subjects), _asked(text)
     whole = frozenset(_texts(words))
-    # A lens with just these words comes before those that have others, too.
+    # A lens with just these words comes before lenses with further words.
     table = {subject.name: float(whole in subject.names) for subject in listed}
     for word in words:
         scores = _scores(word, listed)

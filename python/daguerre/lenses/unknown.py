@@ -9,7 +9,7 @@ from daguerre.files.json_item import Item, clean
 
 from .reading import member
 
-#: Known members by place in the file, including those that no code reads, such as remarks.
+#: Known members by place in the file, including members that no code reads, such as remarks.
 KNOWN = {
     "": (
         *("schema", "units", "name", "type", "maker", "designer", "year", "patent", "format"),

@@ -103,7 +103,7 @@ class Source(Protocol):
         """Facts about the picture."""
 
     def rows(self, rows: Rows) -> Band:
-        """Returns these rows, all of which must lie in the picture."""
+        """Returns these rows; all must be in the picture."""
 
 
 def bands(source: Source, height: int) -> Iterator[Band]:

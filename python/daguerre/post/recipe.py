@@ -126,7 +126,7 @@ def plan(
 
 
 def in_order(planned: Sequence[Planned]) -> tuple[list[Planned], list[str]]:
-    """Moves film effects after lens effects; also returns the names of those that moved."""
+    """Moves film effects after lens effects; also returns the names of the moved effects."""
     first = [p for p in planned if not p.effect.last]
     last = [p for p in planned if p.effect.last]
     done = [*first, *last]

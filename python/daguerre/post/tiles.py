@@ -36,7 +36,7 @@ class Stage:
         return self.source.canvas
 
     def rows(self, rows: Rows) -> Band:
-        """Computes the blocks that contain these rows, except those that are still kept."""
+        """Computes the blocks that contain these rows, except blocks that are still kept."""
         wanted = range(rows.begin // self._block, (rows.end - 1) // self._block + 1)
         self._kept = {k: band for k, band in self._kept.items() if k in wanted}
         for k in wanted:

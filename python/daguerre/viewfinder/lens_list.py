@@ -84,7 +84,7 @@ def about(name: str) -> dict[str, str]:
 
 
 def found(words: str) -> dict[str, Any]:
-    """Names of lenses that have all words, best match first; else those that have most of them."""
+    """Names of lenses with all words, best match first; else of the lenses with most words."""
     subjects = [*_IDEAL, *library()]
     names = ranked(words, subjects)
     return {"words": words, "names": names or nearest(words, subjects), "all": bool(names)}

@@ -40,7 +40,7 @@ PATIENCE_S = 5.0
 GOODBYE_S = 1.0
 #: Pages at once.
 MOST_CLIENTS = 16
-#: Connections at once, with those that have not sent a token yet.
+#: Connections at once, including connections that have not sent a token yet.
 MOST_LINES = 64
 #: Ports to try after a port that is in use.
 TRIES = 20

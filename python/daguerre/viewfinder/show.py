@@ -27,7 +27,7 @@ class Show:
     """Way in which pictures are shown.
 
     Attributes:
-        denoised: Whether they are denoised; None: those on the way are, if that is fast.
+        denoised: Whether pictures are denoised; None: only before they rest, if that is fast.
         models: Whether they are drawn by three models of the lens, side by side.
         tint: One of ``TINTS``: by exposure or distance.
         beside: Dial that differs in a second picture, and its text; None: there is none.

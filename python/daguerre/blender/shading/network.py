@@ -91,7 +91,7 @@ class Networks:
                 self._notes.add(f"the {name.lower()} of a material is not supported")
 
     def _add(self, place: _Place, nodes: dict[str, Node], where: str) -> list[_Place]:
-        """Adds a node; returns those that its inputs come from."""
+        """Adds a node; returns the nodes linked to its inputs."""
         inputs: dict[str, Constant | Link] = dict(properties_of(place.node))
         before = []
         for socket in place.node.inputs:

@@ -162,7 +162,7 @@ def check_writable(output: Output) -> None:
 
 
 def _groups(names: list[str], *, everything: bool) -> list[str]:
-    """Groups of channels by their names in flags, without those that every picture has."""
+    """Groups of channels by their names in flags, without the groups of every picture."""
     film = names_of(Source.FILM)
     groups = set(film) if everything else set()
     for name in (part.strip() for text in names for part in text.split(",")):

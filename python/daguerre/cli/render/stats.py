@@ -46,7 +46,7 @@ def _stopped(session: Session) -> str:
 
 
 def _light(session: Session) -> dict[str, str]:
-    """Number of light paths, and of those that passed the lens and missed the frame."""
+    """Number of light paths, and of light paths that passed the lens and missed the frame."""
     counters, plan = session.counters, show_plan(session.light_paths)
     if plan is None:
         return {"light paths": "off"}

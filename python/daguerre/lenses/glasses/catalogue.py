@@ -218,7 +218,7 @@ def _maker(name: str, maker: str | None) -> str | None:
 
 @cache
 def _catalogue(maker: str) -> dict[str, Any]:
-    """Glasses of a maker, with those that were added by hand."""
+    """Glasses of a maker, including glasses added by hand."""
     data, added = _json(f"{maker.lower()}.json"), _json("added.json")["glasses"]
     return {**data["glasses"], **added.get(maker, {})}
 

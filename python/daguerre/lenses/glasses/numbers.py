@@ -17,7 +17,7 @@ LINE_G = 435.8343
 NEAR_ND, NEAR_VD = 2.5e-4, 0.25
 #: Candidates count as one glass if their P_gF differ by less.
 SAME_P = 0.003
-#: Lenses from before the first year have glass with lead, those from the second year on have none.
+#: Lenses from before the first year have glass with lead, lenses from the second year on have none.
 LEAD_UNTIL, FREE_FROM = 1990, 2000
 #: Prefixes of types without lead. Hoya marks its flints alone, LZOS has none of them.
 _FREE = {

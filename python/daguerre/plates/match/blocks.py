@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from daguerre.files.value import BriefRecord
 
 FloatArray = NDArray[np.float64]
-#: Number of coefficients that select a block, and of those that measure noise.
+#: Number of coefficients that select a block, and of coefficients that measure noise.
 LOW_COUNT, HIGH_COUNT = 9, 16
 
 

@@ -13,7 +13,7 @@ MOST = 400_000
 
 
 def blocks_of(raw: RawNumbers, share: float = 1.0) -> Blocks:
-    """Cuts blocks from a whole mosaic, without those that have clipped photosites.
+    """Cuts blocks from a whole mosaic, without blocks that have clipped photosites.
 
     Args:
         raw: Mosaic.

@@ -44,7 +44,7 @@ class SeenBall:
 
 @dataclass(frozen=True)
 class Unwrapped:
-    """Environment: light (H, W, 3), masks of clipped pixels and of those that no ball shows."""
+    """Environment: light (H, W, 3), masks of clipped pixels and of pixels that no ball shows."""
 
     light: NDArray[np.float32]
     clipped: NDArray[np.bool_]

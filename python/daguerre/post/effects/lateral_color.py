@@ -48,7 +48,7 @@ class Magnification(Radial):
 
 @dataclass(frozen=True)
 class Between(Distortion):
-    """Maps points as a lens shows them in one colour to those in another colour."""
+    """Maps image points of a lens in one colour to its image points in another colour."""
 
     one: Distortion
     other: Distortion
