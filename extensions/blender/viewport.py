@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures in the viewport: a thread draws the newest wish, coarse at first, then better."""
+"""Pictures in the viewport: a thread draws the newest request, coarse at first, then better."""
 
 import itertools
 import math
@@ -16,7 +16,7 @@ from daguerre.camera.exposure_mode import LIGHT
 from daguerre.errors import UsageError
 from daguerre.rendering import Photograph
 from daguerre.viewfinder.dials import Dials
-from daguerre.viewfinder.drawn import Drawn, Wish
+from daguerre.viewfinder.drawn import Drawn, PictureRequest
 from daguerre.viewfinder.painter import Painter
 from daguerre.viewfinder.shot import Shot
 from daguerre.viewfinder.stage import Stage
@@ -55,13 +55,13 @@ class Viewport:
     def __init__(self, redraw: Callable[[], None]) -> None:
         self._redraw = redraw
         self._numbers = itertools.count()
-        self._wished: int | None = None
+        self._requested: int | None = None
         self._view: View | None = None
         self._stage: Stage | None = None
         self._shot: translation.Shot | None = None
         self.newest: Drawn | None = None
         self.words = "Waiting"
-        self._lock = threading.Lock()  # of the wish that counts, its picture and its words
+        self._lock = threading.Lock()  # of the request that counts, its picture and its words
         self._painter = Painter(self._show, self._fail)
 
     def close(self) -> None:
@@ -92,7 +92,7 @@ class Viewport:
         """Tells in the viewport why there is no picture, until the view or the scene changes."""
         self._painter.rest()
         with self._lock:
-            self._view = self._wished = self.newest = None
+            self._view = self._requested = self.newest = None
             self.words = text_of(error)
 
     def ask(self, shot: translation.Shot, camera: Camera, size: tuple[int, int]) -> None:
@@ -101,22 +101,22 @@ class Viewport:
         settings = shot.settings.with_(resolution=size, crop=None, overscan=None)
         if self._stage is None:
             self._stage = Stage(shot.scene, camera, settings)
-        wished = Shot(shot.scene, camera, settings, Photograph())
-        self._wished = next(self._numbers)
-        self._painter.wish(Wish(self._wished, self._stage, Dials(), wished))
+        requested = Shot(shot.scene, camera, settings, Photograph())
+        self._requested = next(self._numbers)
+        self._painter.request(PictureRequest(self._requested, self._stage, Dials(), requested))
 
     def _show(self, drawn: Drawn) -> None:
-        most = drawn.wish.shot.settings.sampling.most
+        most = drawn.request.shot.settings.sampling.most
         words = f"{drawn.samples}/{most} spp" if drawn.whole else "Preview"
-        self._tell(drawn.wish, words, drawn)
+        self._tell(drawn.request, words, drawn)
 
-    def _fail(self, wish: Wish, error: Exception) -> None:
-        self._tell(wish, text_of(error), None)
+    def _fail(self, request: PictureRequest, error: Exception) -> None:
+        self._tell(request, text_of(error), None)
 
-    def _tell(self, wish: Wish, words: str, newest: Drawn | None) -> None:
-        """Takes over what the painter's thread found, unless another wish counts by now."""
+    def _tell(self, request: PictureRequest, words: str, newest: Drawn | None) -> None:
+        """Takes over what the painter's thread found, unless another request counts by now."""
         with self._lock:
-            if wish.number != self._wished:
+            if request.number != self._requested:
                 return
             self.words, self.newest = words, newest
         self._redraw()

@@ -50,7 +50,7 @@ def test_the_picture_at_rest_is_that_of_a_render(module, viewport):
     assert viewport.words == "4/4 spp"
 
 
-def test_the_newest_wish_wins_at_once(module, viewport):
+def test_the_newest_request_wins_at_once(module, viewport):
     long, short = shot_of(module, 1_000_000), shot_of(module, 2)
     viewport.ask(long, long.camera, (400, 300))
     until(lambda: viewport.newest is not None)
@@ -61,7 +61,7 @@ def test_the_newest_wish_wins_at_once(module, viewport):
     assert viewport.newest.frame.rgb.shape == (40, 50, 3)
 
 
-def test_a_wish_that_cannot_be_drawn_is_told_and_the_next_one_is_drawn(module, viewport):
+def test_a_request_that_cannot_be_drawn_is_told_and_the_next_is_drawn(module, viewport):
     shot = shot_of(module, 1)
     viewport.ask(shot, camera(lens="no-such-lens"), (50, 40))
     until(lambda: "no-such-lens" in viewport.words)
