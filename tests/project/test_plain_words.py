@@ -14,13 +14,7 @@ PATTERNS, comments, files, rates = (WORDS[k] for k in ("PATTERNS", "comments", "
 
 #: Rooms with comments that are still to be rewritten.
 LEFT = {
-    "python/daguerre/apart",
-    "python/daguerre/export",
-    "python/daguerre/exporters",
-    "python/daguerre/files",
     "python/daguerre/importers",
-    "python/daguerre/pictures",
-    "python/daguerre/shading",
 }
 ROOMS = sorted(
     room.relative_to(ROOT).as_posix()

@@ -22,10 +22,10 @@ from pathlib import Path
 
 
 class Parent:
-    """The parent process, as long as it holds the other end of a pipe.
+    """Connection to the parent process: a pipe that closes when the parent ends.
 
     Args:
-        life: The reading end.
+        life: Reading end of the pipe.
     """
 
     def __init__(self, life: int) -> None:
@@ -34,18 +34,19 @@ class Parent:
 
     @contextlib.contextmanager
     def needed(self) -> Iterator[None]:
-        """Ends this process with the parent, whatever a library does then.
+        """Ends this process with the parent, even while a library runs.
 
-        The kernel sends SIGIO, for which nothing is set up. Source: fcntl(2), O_ASYNC.
+        The kernel sends SIGIO, which has no handler and so ends the process. Source: fcntl(2),
+        O_ASYNC.
         """
         flags = fcntl.fcntl(self._life, fcntl.F_GETFL)
         fcntl.fcntl(self._life, fcntl.F_SETFL, flags | os.O_ASYNC)
         poll = select.poll()
         poll.register(self._life, 0)
-        if poll.poll(0):  # it had closed before
+        if poll.poll(0):  # the parent was gone before
             os._exit(1)
         yield
-        with contextlib.suppress(OSError):  # none was made, or it has files
+        with contextlib.suppress(OSError):  # there is no folder, or it has files
             Path(os.environ["TMPDIR"]).rmdir()
         fcntl.fcntl(self._life, fcntl.F_SETFL, flags)
 
@@ -63,7 +64,7 @@ def _exactly(end: socket.socket, size: int) -> bytes:
 def _folder() -> str:
     """The folder of temporary files, made on first use and removed after the task.
 
-    A helper that is killed leaves no folder, unless its task was using one.
+    A killed helper leaves a folder behind only if its task was using it.
     """
     name = os.environ["TMPDIR"]
     Path(name).mkdir(mode=0o700, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Keeps a helper process: one for each process of ours, begun on first use, ended when idle."""
+"""Keeps one helper process for each process of ours: started on first use, ended when idle."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ IDLE = 20.0
 _WORN = 6e8
 #: Most characters of a text from a helper.
 _LONGEST = 1 << 16
-#: Hears a text that a helper tells while it works; returns the limits from then on.
+#: Receives a text that a helper sends while it works; returns the limits from then on.
 Heard = Callable[[str], Limits]
 _all: weakref.WeakSet[Helper] = weakref.WeakSet()
 
@@ -71,10 +71,10 @@ class Answer:
 
 
 class Helper:
-    """A helper process for tasks of one kind; threads take turns, and a fork begins its own.
+    """A helper process for tasks of one kind; threads take turns, and a fork starts a new helper.
 
-    A task is a function of the helper, called with plain values and with a function that tells the
-    parent a text: ``task(request, tell)``. It returns plain values, arrays and, where the caller
+    A task is a function in the helper: ``task(request, tell)``. It takes plain values, and a
+    function that sends a text to the parent. It returns plain values, arrays and, if the caller
     makes them, values of classes.
     """
 
@@ -105,12 +105,12 @@ class Helper:
             request: Plain values.
             limits: Limits of the task.
             where: File, for messages.
-            heard: Hears what the task tells, and returns new limits.
+            heard: Receives the texts of the task, and returns new limits.
 
         Raises:
-            InputError: The helper ended, sent what it must not, or met a fault.
-            NoHelperError: It cannot be started.
-            DaguerreError: Error of the task, with its class and its text.
+            InputError: The helper ended, sent an invalid message, or met a fault.
+            NoHelperError: The helper cannot be started.
+            DaguerreError: The error of the task, with the same class and text.
         """
         blocks = packed((task, request))
         with self._lock:
@@ -121,7 +121,7 @@ class Helper:
         _raise(kind, answer, where, limits)
 
     def end(self) -> None:
-        """Ends the process, if there is one, also during a task; a later task begins another."""
+        """Ends a running process, also during a task; a later task starts another."""
         process = self._process
         if self._lock.acquire(blocking=False):
             try:
@@ -223,7 +223,7 @@ class Helper:
 
 
 def _is_worn(process: Process) -> bool:
-    """Whether a helper keeps much memory; it may still let go of that of the last task."""
+    """Whether a helper keeps much memory; the memory of the last task may take a while to free."""
     for _ in range(20):
         if process.resident <= _WORN:
             return False

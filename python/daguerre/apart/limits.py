@@ -1,4 +1,4 @@
-"""Limits of a helper process, and the words for what ended it."""
+"""Limits of a helper process, and the message for the limit that ended it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from daguerre import memory
 
-#: Words by which libraries tell that they got no memory.
+#: Words in the messages of libraries that ran out of memory.
 _NO_MEMORY = ("bad_alloc", "MemoryError", "annot allocate memory", "length_error")
 #: Share of the limit of memory beyond which a signal means a lack of it.
 _NEARLY = 0.8
@@ -37,13 +37,13 @@ def too_much(limits: Limits) -> str:
 
 
 def ended(code: int, peak: float, limits: Limits, words: str) -> str:
-    """Words for a helper that ended by itself.
+    """Message for a helper that ended before its answer.
 
     Args:
-        code: Its exit code; negative: a signal.
-        peak: Most resident memory that was seen, bytes.
+        code: Exit code; negative: a signal.
+        peak: Largest resident memory in a sample, bytes.
         limits: Limits of the task.
-        words: End of its standard error.
+        words: Last part of the helper's standard error.
     """
     if any(word in words for word in _NO_MEMORY) or (code < 0 and peak > _NEARLY * limits.memory):
         return too_much(limits)

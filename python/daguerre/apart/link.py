@@ -24,7 +24,7 @@ _HEAD, _SIZE = struct.Struct("<cI"), struct.Struct("<Q")
 #: answer, an error, and a fault, the error of a bug. HEARD confirms a text.
 TASK, READY, TOLD, ANSWER, ERROR, FAULT = b"t", b"r", b"n", b"a", b"e", b"f"
 HEARD = b"h"
-#: Least size of a large part, bytes, and the two marks before one.
+#: Least size of a large part, bytes, and the marks before a part: bytes in the stream, or a file.
 _LARGE = 1 << 20
 _BYTES, _FILE = b"b", b"f"
 #: Most blocks of a message.
@@ -36,7 +36,7 @@ class DamagedError(Exception):
 
 
 def _parts(sizes: Sequence[int]) -> Iterator[tuple[int, int]]:
-    """Numbers of the first block of each part, and of the first one after it."""
+    """Range of blocks of each part: first block, and last block plus 1."""
     begin, total = 0, 0
     for number, size in enumerate(sizes):
         total += size
@@ -107,7 +107,7 @@ class Link:
 
         Raises:
             EOFError: The other end is gone.
-            DamagedError: It is none, or too large.
+            DamagedError: The bytes are no message, or the message is too large.
         """
         kind, count = _HEAD.unpack(self._exactly(_HEAD.size).tobytes())
         if count > min(_MOST_BLOCKS, most() / _SIZE.size):

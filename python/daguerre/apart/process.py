@@ -1,9 +1,9 @@
 """Starts, watches and ends a helper process.
 
-Its limits are watched here, where a fault of the helper cannot touch them. The helper has its own
-session, so Ctrl-C reaches this process alone; the name of a folder of its own for temporary files,
-which it makes when it needs one, and which is removed with it; and the reading end of a pipe that
-tells it, by a signal, when this process is gone.
+The limits are watched here, where a fault of the helper cannot touch them. The helper has a session
+to itself, so Ctrl-C reaches this process alone. It has a folder for temporary files, made on first
+use and removed with the helper. It holds the reading end of a pipe, and the kernel signals when
+this process, at the writing end, is gone.
 """
 
 from __future__ import annotations
@@ -214,7 +214,7 @@ class Process:
             return ""
 
     def _bound_memory(self) -> None:
-        """Makes the kernel refuse what is far beyond the limit, which may come within a tick."""
+        """Makes the kernel refuse memory far beyond the limit; it may grow between two checks."""
         with contextlib.suppress(ImportError, AttributeError, OSError, ValueError):
             import resource
 

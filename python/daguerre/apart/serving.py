@@ -1,4 +1,4 @@
-"""The helper's side: runs tasks one after the other, until the connection closes."""
+"""Runs tasks in the helper in turn, until the connection closes."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from .link import ANSWER, ERROR, FAULT, HEARD, READY, TASK, TOLD, DamagedError, 
 
 #: Classes of errors that cross, by name.
 ERRORS = {kind.__name__: kind for kind in (InputError, UsageError, MismatchError, OutputError)}
-_telling = threading.Lock()  # any thread of a task may tell
+_telling = threading.Lock()  # any thread of a task may send a text
 
 
 @dataclass(frozen=True)
 class Owned:
-    """Result of a task whose arrays lie in memory of an object, which is kept until it is sent.
+    """Result of a task with arrays in the memory of an object, which is kept until they are sent.
 
     Attributes:
         value: Plain values and arrays.
@@ -49,7 +49,7 @@ def serve(end: socket.socket, needed: Callable[[], AbstractContextManager[None]]
 
     Args:
         end: Connection to the parent.
-        needed: Within it, this process ends with the parent at once.
+        needed: Context in which this process ends at once when the parent ends.
     """
     end.setblocking(True)
     link = Link(end)
@@ -61,9 +61,9 @@ def serve(end: socket.socket, needed: Callable[[], AbstractContextManager[None]]
                 with needed():
                     kind, answer, owner = _answer(link, blocks)
                 link.send(kind, answer)
-                del blocks, answer  # before their owner, which would copy what is still in use
+                del blocks, answer  # before their owner, which would copy arrays still in use
                 del owner
-                gc.collect()  # so that a library lets go of the files that it holds
+                gc.collect()  # so that libraries close their files
                 _trim()
 
 
@@ -108,7 +108,7 @@ def _function(name: str) -> Any:
 
 
 def _tell(link: Link, text: str) -> None:
-    """Tells a text, and waits until it is heard: the limits are then those that it asks for."""
+    """Sends a text and waits for the reply: the parent has set new limits by then."""
     with _telling:
         link.send(TOLD, [_bytes(text)])
         kind, _ = link.receive(lambda: float("inf"))

@@ -55,7 +55,7 @@ def mapped(files: list[int], sizes: Sequence[int]) -> list[NDArray[np.uint8]]:
     """Maps the bytes of blocks, read-only. The file can be closed then.
 
     Args:
-        files: Open files that came with the blocks; one is wanted.
+        files: Open files that came with the blocks; valid: a single file.
         sizes: Numbers of bytes; not all are 0.
 
     Raises:

@@ -160,7 +160,7 @@ def _least_squares(
 
 
 def _exponents(symmetric: bool, degree: int) -> Exponents:
-    """Exponents of a complete basis; those of the last variable, the wavelength, count double."""
+    """Exponents of a complete basis; the last variable, the wavelength, counts double."""
     choices = product(range(degree + 1), repeat=4 if symmetric else 5)
     return [e for e in choices if sum(e) + e[-1] <= degree]
 

@@ -145,7 +145,7 @@ class LetCall:
 
 @dataclass(frozen=True)
 class LetOneOf:
-    """Statement that names outputs of the first function whose condition holds, else the last."""
+    """Statement that names outputs of the first function with a true condition, else the last."""
 
     names: tuple[str, ...]
     conditions: tuple[Condition, ...]
@@ -170,7 +170,7 @@ class Function:
         return Name(name)
 
     def temporary(self, value: Operand) -> Expression:
-        """Gives a value that is used more than once a name of its own."""
+        """Names a value that is used more than once."""
         expression = lift(value)
         if isinstance(expression, Number | Name):
             return expression
@@ -187,7 +187,7 @@ class Function:
         functions: tuple[Function, ...],
         *arguments: Operand,
     ) -> tuple[Name, ...]:
-        """Calls the first function whose condition holds, or the last if none does."""
+        """Calls the first function with a true condition, or else the last."""
         names = []
         for _ in functions[0].outputs:
             self._count += 1

@@ -95,7 +95,7 @@ def save(data: dict[str, Any], path: str | Path) -> None:
 
 
 def write(path: str | Path, data: dict[str, Any]) -> None:
-    """Writes a fitted lens to a file whose suffix is one of the table's."""
+    """Writes a fitted lens to a file; its suffix chooses the language."""
     write_bytes(path, code(data, Path(path).suffix.lower()).encode())
 
 

@@ -1,4 +1,4 @@
-"""Makes the exported functions: ``evaluate`` traces a film ray, ``sample`` samples one."""
+"""Makes the exported functions: ``evaluate`` traces a film ray, ``sample`` samples a film ray."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Coordinates:
 
     @property
     def symmetric(self) -> bool:
-        """Whether the variables are those of axial symmetry."""
+        """Whether the variables assume axial symmetry."""
         return len(self.variables) == 4
 
 
@@ -197,7 +197,7 @@ def sample_function(plan: LensPlan, evaluate: Function, name: str) -> Function:
     open_share = opening(f, plan, f_stop)
     r, angle = f.let("r", call("sqrt", u1)), f.let("angle", 2 * math.pi * u2)
     disc = f.let("disc_x", r * call("cos", angle)), f.let("disc_y", r * call("sin", angle))
-    # Area of slopes over that of the disc; its factor open share squared cancels in the exposure.
+    # Ratio of the areas of slopes and disc; its factor (open share)^2 cancels in the exposure.
     draw = draw_by_pupil if plan.aim is None else draw_by_aim
     (mx, my), density = draw(f, plan, film, disc, nm, open_share)
     ray = f.results(evaluate, *film, mx, my, nm, f_stop)
@@ -230,7 +230,7 @@ def draw_by_aim(
     a = f.let("ax", disc[0] * grow), f.let("ay", disc[1] * grow)
     at = coordinates(f, plan.symmetric, normalized(f, plan, film), a, wavelength(f, plan, nm))
     slope = vector(f, aim.slope, at)
-    # Where the map folds back, its sign changes; such points get a density of 0.
+    # Where the map folds back, its sign changes; folded points get a density of 0.
     jacobian = f.let("jacobian", slope_jacobian(f, aim.slope, at))
     area = aim.orientation * math.pi * (reach / aim.radius_mm) ** 2
     return slope, f.let("density", call("max", area * jacobian, 0.0))

@@ -24,7 +24,7 @@ class Vector:
 
 @dataclass(frozen=True)
 class Mount:
-    """A surface whose rim cuts rays: where rays meet it, and its clear radii, mm."""
+    """Surface with a rim that cuts rays: the point where rays meet it, and its clear radii, mm."""
 
     surface: int
     point: Vector

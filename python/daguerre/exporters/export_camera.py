@@ -23,18 +23,19 @@ def export_camera(
 ) -> None:
     """Writes cameras as a USD stage (.usda, .usdc, .usd), whole or not at all.
 
-    Each camera is a ``UsdGeomCamera`` with all that such a one has, with NVIDIA's attributes for
-    calibrations and rolling shutters, and with ``daguerre:*`` for the rest (``docs/usd.md``).
+    Each camera is a ``UsdGeomCamera`` with all attributes that UsdGeomCamera has, NVIDIA's
+    attributes for calibrations and rolling shutters, and ``daguerre:*`` for the rest
+    (``docs/usd.md``).
 
     Args:
         camera: A camera, several by name, or all of a scene.
         path: The file.
-        times: Begin and end of what changes over time, s; None: those of its keys. A motion without
+        times: Begin and end of animated values, s; None: the first and last key. A motion without
             end, such as a spin, needs them.
 
     Raises:
-        UsageError: There is no camera, or a camera has something that no stage can hold, such as a
-            lens that is in no file; or no USD is installed.
+        UsageError: There is no camera, or a camera has a part that no stage can hold, such as a
+            lens that is in no file; or USD is not installed.
         OutputError: The file cannot be written.
     """
     if isinstance(camera, Camera):
@@ -43,9 +44,9 @@ def export_camera(
         cameras = camera.cameras if isinstance(camera, Scene) else camera
     if not cameras:
         raise UsageError("export_camera: camera: no camera given")
-    for name, one in cameras.items():
-        if not isinstance(name, str) or not isinstance(one, Camera):
-            got = f"{short(name)}: {short(one)}"
+    for name, value in cameras.items():
+        if not isinstance(name, str) or not isinstance(value, Camera):
+            got = f"{short(name)}: {short(value)}"
             raise UsageError(f"export_camera: camera: wanted cameras by name, got {got}")
     span = None
     if times is not None:

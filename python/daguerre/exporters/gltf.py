@@ -1,6 +1,6 @@
 """Writes meshes, pictures, materials, nodes and animations into one .glb file (glTF 2.0).
 
-It is public; charts and the programs in ``scenes/`` write their files with it.
+The writer is public; charts and the programs in ``scenes/`` write their files with it.
 """
 
 from __future__ import annotations
@@ -147,7 +147,7 @@ class Glb:
         return self.add_primitive(name, **self.primitive(shape, material, more, **primitive))
 
     def add_parts(self, name: str, parts: Sequence[tuple[Shape, int]]) -> int:
-        """Adds one mesh of several shapes, each with its own material."""
+        """Adds one mesh of several shapes, each with a material."""
         primitives = [self.primitive(shape, material) for shape, material in parts]
         return self.add("meshes", {"name": name, "primitives": primitives})
 

@@ -17,8 +17,8 @@ class LensFile:
 
     Attributes:
         rows: Radius of curvature (0: the stop, or a plane of no effect), distance to the next row,
-            index of what follows at 587.56 nm, and clear diameter, shape (N, 4), mm.
-        stop_diameter_mm: Diameter of the iris as it is set.
+            index of the next medium at 587.56 nm, and clear diameter, shape (N, 4), mm.
+        stop_diameter_mm: Diameter of the iris at its setting.
         focus_from_film_m: Distance from the film to the plane in focus.
         pupil_from_film_m: Distance from the film to the entrance pupil, along the axis.
         gain: Factor on the film's light that makes a world of luminance 1 a picture of 1.
@@ -68,7 +68,7 @@ class View:
 
 @dataclass(frozen=True)
 class Outgoing:
-    """A scene at its time, the camera that sees it, and how it is to be drawn.
+    """A scene at its time, its camera, and the settings of the picture.
 
     Attributes:
         scene: The scene.
@@ -76,7 +76,7 @@ class Outgoing:
         resolution: Width and height of the picture, px.
         spp: Samples per pixel.
         max_depth: Largest number of surfaces along a light path.
-        notes: Remarks on what is approximated or left out; writers add theirs.
+        notes: Remarks on approximations and missing parts; writers add theirs.
     """
 
     scene: Scene

@@ -21,7 +21,7 @@ class ArrayValue:
         """Returns the array; NumPy 1 passes no ``copy``, NumPy 2 True, False or None.
 
         Args:
-            dtype: Type of the elements; None: that of the array.
+            dtype: Type of the elements; None: unchanged.
             copy: Whether to copy; None: only where another type needs it.
 
         Raises:

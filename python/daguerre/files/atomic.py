@@ -2,10 +2,10 @@
 
 A temporary file is written, synced and renamed. A power failure at any moment leaves the old file
 or the new one: the bytes reach the disk before the name, and the folder is synced after it. Writers
-hold a lock on their temporary file. One without a lock was left by a killed writer, and is removed
-when the same file is written or removed next.
+hold a lock on their temporary file. A temporary file without a lock was left by a killed writer,
+and is removed when the same file is written or removed next.
 
-All outputs are opened here, so here a file that the command reads is refused.
+All outputs are opened here, so a file that the command reads is refused as an output here.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def atomic_path(target: Name, *, over: Name | None = None) -> Iterator[Path]:
     try:
         with _os_errors(path):
             lock = _create(temp)
-        with _os_errors(path):  # what the block itself could not write
+        with _os_errors(path):  # faults of the block's writes
             yield temp
             _sync(temp)
             temp.replace(path)
@@ -147,7 +147,7 @@ def _create(path: Path) -> int:
 
 def _drop_left(path: Path) -> None:
     """Removes temporary files of this target whose writers are dead."""
-    # No regular expression: one per file of a long sequence would fill the cache of them.
+    # No regular expression: a long sequence of files would fill the cache of patterns.
     head, tail = f".{path.stem}.", f".tmp{path.suffix}"
     length = len(head) + 8 + len(tail)
     with suppress(OSError), os.scandir(path.parent) as entries:

@@ -1,4 +1,4 @@
-"""Optional packages: the extra that has each, and one error if one is missing."""
+"""Optional packages: the extra that has each, and the error if a package is missing."""
 
 from __future__ import annotations
 

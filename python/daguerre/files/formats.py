@@ -152,7 +152,7 @@ def read(
     Args:
         kind: Kind of its content.
         path: The file.
-        notes: Receives the notes of a format that takes some.
+        notes: Receives notes, if the format takes notes.
         options: Options of the format.
 
     Raises:
@@ -180,7 +180,7 @@ def time_of_code(path: str | os.PathLike[str], code: float, **options: object) -
     """Converts a time code of a scene file to s.
 
     Raises:
-        UsageError: The format has no time codes, or no such option.
+        UsageError: The format has no time codes, or lacks an option.
         InputError: The file cannot be used.
     """
     row = _row(formats("scene"), Path(path).suffix.lower())
@@ -193,7 +193,7 @@ def write(kind: Kind, path: str | os.PathLike[str], value: object, **options: ob
     """Writes a value atomically, in the format of the file's suffix.
 
     Raises:
-        UsageError: No format of the kind has this suffix, or the format no such option.
+        UsageError: No format of the kind has this suffix, or the format lacks an option.
         OutputError: The file cannot be written.
     """
     row = _row(formats(kind), check_written(path, written(kind)))
@@ -203,7 +203,7 @@ def write(kind: Kind, path: str | os.PathLike[str], value: object, **options: ob
 
 
 def load_writer(kind: Kind, path: str | os.PathLike[str]) -> None:
-    """Imports what writes a file of a kind, if its suffix is one of the kind's."""
+    """Imports the writer of a file's format, if the kind has the file's suffix."""
     row = _row(formats(kind), Path(path).suffix.lower())
     if row is not None and isinstance(row.writes, str):
         import_module(row.writes.partition(":")[0])

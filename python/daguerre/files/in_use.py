@@ -40,7 +40,7 @@ class _Record:
 
 #: Record of the running command, which all its threads share.
 _of_command: _Record | None = None
-#: Record of a call of a function, in its own thread and those that get its context.
+#: Record of a call of a function, in its thread and threads that get its context.
 _of_call: ContextVar[_Record | None] = ContextVar("files in use", default=None)
 #: Whether files are read to be replaced, such as a checkpoint.
 _replacing: ContextVar[bool] = ContextVar("files to be replaced", default=False)

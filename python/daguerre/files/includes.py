@@ -1,6 +1,6 @@
 """Files that texts include: limits of their number and bytes, so that a few lines end soon.
 
-Each file may ask for several others, so what a few small files ask for can grow without bounds.
+Each file may include several others, so a few small files can ask for a number without bounds.
 """
 
 from __future__ import annotations

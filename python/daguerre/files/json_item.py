@@ -236,7 +236,7 @@ class Item:
 
 
 def _at_place(value: object, place: tuple[str | int, ...]) -> Item:
-    """Restores a pickled value, whose parents are only known by their keys."""
+    """Restores a pickled value; only the keys of its parents are known."""
     parent: Item | None = None
     for key in place[:-1]:
         parent = Item(None, key, parent)

@@ -16,7 +16,7 @@ def stems(folder: Path) -> list[str]:
 
 
 def find(
-    what: str,
+    kind: str,
     name_or_path: str | Path,
     folder: Path,
     names: Collection[str],
@@ -26,11 +26,11 @@ def find(
     """Returns the file of a library name, or the given file itself.
 
     Args:
-        what: Kind of thing that the library holds, for messages: sensor, stock, lens.
+        kind: Kind of object in the library, for messages: sensor, stock, lens.
         name_or_path: One of ``names``, or a file.
         folder: Folder of the library.
         names: Names of the library.
-        suffixes: Suffixes, in lower case, that mark a file even if none of that name exists.
+        suffixes: Suffixes, in lower case, that mark a file even if no such file exists.
         near: Makes the suggestion of a message; default: the names with the nearest spelling.
 
     Raises:
@@ -43,5 +43,5 @@ def find(
         return path
     hint = near(text) if near else suggest(text, names, few=True)
     raise InputError(
-        f"{what} {short(text)}: no {what} of the library and no file has this name{hint}"
+        f"{kind} {short(text)}: no {kind} of the library and no file has this name{hint}"
     )

@@ -11,13 +11,13 @@ from pathlib import Path
 def drop_oldest(folder: Path, limit: int, is_ours: Callable[[str], bool], spared: str = "") -> None:
     """Removes the least recently used files until all fit.
 
-    Other processes may do so at the same time.
+    Other processes may remove files at the same time.
 
     Args:
         folder: The folder.
         limit: Size of all files, bytes.
         is_ours: Whether a file of that name counts, and may be removed.
-        spared: Name of a file that stays, even if it exceeds the limit by itself.
+        spared: Name of a file that stays, even if it alone exceeds the limit.
     """
 
     def entries() -> Iterator[tuple[float, int, str]]:

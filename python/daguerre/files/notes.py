@@ -21,7 +21,7 @@ class Notes:
         Args:
             sentence: The remark.
             count: Number of uses.
-            name: Name of the use, such as that of a file; the first one is told.
+            name: Name of the use, such as a file name; the remark gives the first.
         """
         self._counts[sentence] = self._counts.get(sentence, 0) + count
         if name:

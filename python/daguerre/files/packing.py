@@ -2,10 +2,10 @@
 
 Unlike a pickle, a packed value can name no code: a reader makes values of Daguerre's own classes
 and nothing else. Parts that are shared stay shared, so that a scene is as small as in memory.
-Attributes of values are not checked; a reader of bytes from strangers makes values by a function of
-its own (``make``), which checks them.
+Attributes of values are not checked; a reader of bytes from strangers passes a function (``make``)
+that makes values and checks them.
 
-Large arrays travel by themselves, under their hash: scenes of a sequence share most of them. A
+Large arrays travel apart from it, under their hash: scenes of a sequence share most of them. A
 packed value is two lines of JSON, and the bytes of its small arrays, each filled up to a multiple
 of 8::
 
@@ -39,7 +39,7 @@ from daguerre.files.value import Value
 
 _OURS = "daguerre."
 _KINDS = "biufc?"
-#: Size from which an array travels by itself, bytes.
+#: Size from which an array travels apart, bytes.
 LARGE = 1 << 16
 #: Arrays begin at multiples of this, bytes.
 _ALIGNED = 8
@@ -61,7 +61,7 @@ class Packed:
 
 
 def hash_of(data: Any) -> str:
-    """Name under which bytes, or those of an array, are kept: their SHA-256."""
+    """Name under which bytes or an array are kept: SHA-256."""
     return hashlib.sha256(data).hexdigest()
 
 
@@ -72,18 +72,18 @@ def pack(
 
     Args:
         value: The value.
-        name: Hash of an array in C order; :func:`hash_of`, perhaps with a memory.
-        large: Size from which an array travels by itself, bytes; ``math.inf``: none does.
+        name: Hash of an array in C order; :func:`hash_of`, possibly cached.
+        large: Size from which an array travels apart, bytes; ``math.inf``: no array does.
 
     Raises:
-        UsageError: It has a part that is neither plain nor of Daguerre, such as a function.
+        UsageError: The value has a part that is neither plain nor of Daguerre, such as a function.
     """
     writer = _Writer(name, large)
     root = writer.of(value)
     head = {"version": __version__, "large": sorted(writer.large)}
     body = {"root": root, "parts": writer.parts, "arrays": writer.facts}
     lines = [
-        json.dumps(one, separators=(",", ":"), allow_nan=False).encode() for one in (head, body)
+        json.dumps(part, separators=(",", ":"), allow_nan=False).encode() for part in (head, body)
     ]
     return Packed(b"\n".join([*lines, b"".join(writer.small)]), writer.large)
 
@@ -102,21 +102,21 @@ def large_of(data: bytes) -> list[str]:
                 f"packed value: made by daguerre {short(head['version'])}, but this is daguerre "
                 f"{__version__}"
             )
-        return [str(one) for one in head["large"]]
+        return [str(name) for name in head["large"]]
 
 
 def unpack(data: bytes, large: Callable[[str], bytes], make: Make | None = None) -> Any:
-    """Unpacks what :func:`pack` packed.
+    """Unpacks a value of :func:`pack`.
 
     Args:
         data: ``Packed.data``.
         large: Returns the bytes of a large array by its hash.
-        make: Makes values of classes, whose parts are made before, so that none can hold itself;
-            default: any of Daguerre's, with their attributes as they were packed.
+        make: Makes values of classes from parts made before, so that no value can hold itself;
+            default: any class of Daguerre, with its attributes as they were packed.
 
     Raises:
-        MismatchError: Another version of Daguerre packed it.
-        InputError: It is damaged.
+        MismatchError: Another version of Daguerre packed the value.
+        InputError: The bytes are damaged.
     """
     large_of(data)
     with damage():
@@ -134,7 +134,7 @@ _WRONG = (
 
 @contextmanager
 def damage() -> Iterator[None]:
-    """Makes an ``InputError`` of errors that damaged bytes cause; those of Daguerre pass."""
+    """Makes an ``InputError`` of errors that damaged bytes cause; Daguerre's errors pass."""
     try:
         yield
     except DaguerreError:
@@ -172,7 +172,7 @@ def _arrays(
 
 
 def padded(size: int) -> int:
-    """Size of an array with the bytes that fill it up, so that the next one is aligned."""
+    """Size of an array with padding, so that the next array is aligned, bytes."""
     return size + -size % _ALIGNED
 
 
@@ -195,7 +195,7 @@ class _Writer:
         if type(value) is float:
             return value if math.isfinite(value) else {"float": str(value)}
         if type(value) is tuple:
-            return {"tuple": [self.of(one) for one in value]}
+            return {"tuple": [self.of(part) for part in value]}
         if isinstance(value, PurePath):
             return {"path": str(value)}
         if isinstance(value, np.generic):
@@ -223,14 +223,14 @@ class _Writer:
     def _part(self, value: object) -> None:
         number = len(self.parts)
         self._numbers[id(value)] = {"part": number}
-        self.parts.append(None)  # its own parts may refer to it
+        self.parts.append(None)  # parts of the value may refer to it
         self.parts[number] = self._contents(value)
 
     def _contents(self, value: Any) -> Any:
         if type(value) in _SEQUENCES:
-            return {type(value).__name__: [self.of(one) for one in value]}
+            return {type(value).__name__: [self.of(part) for part in value]}
         if type(value) in _MAPPINGS:
-            pairs = [[self.of(key), self.of(one)] for key, one in value.items()]
+            pairs = [[self.of(key), self.of(part)] for key, part in value.items()]
             return {type(value).__name__: pairs}
         if isinstance(value, Item):
             _, (held, place) = value.__reduce__()
@@ -286,20 +286,20 @@ class _Reader:
         """Value of its JSON."""
         if not isinstance(given, dict):
             return given
-        ((key, what),) = given.items()
+        ((key, content),) = given.items()
         match key:
             case "part":
-                return self._part(what)
+                return self._part(content)
             case "array":
-                return self._arrays[what]
+                return self._arrays[content]
             case "tuple":
-                return tuple(self.of(one) for one in what)
+                return tuple(self.of(part) for part in content)
             case "float":
-                return float(what)
+                return float(content)
             case "path":
-                return Path(what)
+                return Path(content)
             case "scalar":
-                return self._arrays[what][()]
+                return self._arrays[content][()]
         raise ValueError(f"no kind of value {short(key)}")
 
     def _part(self, number: int) -> Any:
@@ -311,19 +311,19 @@ class _Reader:
         if "class" in given:
             self._make_object(number, given)
             return
-        ((key, what),) = given.items()
+        ((key, content),) = given.items()
         match key:
             case "list":
                 found = self._made[number] = []
-                found.extend(self.of(one) for one in what)
+                found.extend(self.of(part) for part in content)
             case "dict" | "OrderedDict":
                 pairs = self._made[number] = {} if key == "dict" else OrderedDict()
-                pairs.update((self.of(k), self.of(v)) for k, v in what)
+                pairs.update((self.of(k), self.of(v)) for k, v in content)
             case "set" | "frozenset":
                 kind = set if key == "set" else frozenset
-                self._made[number] = kind(self.of(one) for one in what)
+                self._made[number] = kind(self.of(part) for part in content)
             case "item":
-                self._made[number] = _item(*map(self.of, what))
+                self._made[number] = _item(*map(self.of, content))
             case _:
                 raise ValueError(f"no kind of part {short(key)}")
 

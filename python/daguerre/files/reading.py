@@ -44,13 +44,13 @@ def reading(path: str | os.PathLike[str]) -> Iterator[None]:
 
 
 def shown(path: str | os.PathLike[str]) -> str:
-    """Formats a path for messages: one that comes from a file may be long."""
+    """Formats a path for messages: a path from a file may be long."""
     name = os.fspath(path)
     return name if len(name) <= _LONGEST else f"{name[:_LONGEST]}..."
 
 
 def is_file(path: Path) -> bool:
-    """Whether there is such a file: false also for what is no name of a file, such as a long one.
+    """Whether there is such a file; false also for an invalid name, such as a name too long.
 
     ``Path.is_file`` raises ``OSError`` for a name of more than 255 bytes.
     """
@@ -58,12 +58,12 @@ def is_file(path: Path) -> bool:
 
 
 def is_folder(path: Path) -> bool:
-    """Whether there is such a folder: false also for what is no name of a file."""
+    """Whether there is such a folder; false also for an invalid name."""
     return _holds(path.is_dir)
 
 
 def exists(path: Path) -> bool:
-    """Whether there is something of this name: false also for what is no name of a file."""
+    """Whether there is a file or folder of this name; false also for an invalid name."""
     return _holds(path.exists)
 
 
@@ -90,7 +90,7 @@ def _fault(mode: int) -> str:
 
 
 def size_of(path: Path, most: int | None = None) -> int:
-    """Returns the size of a file, bytes, and notes that it is read, as by a library.
+    """Returns the size of a file, bytes, and notes that a library reads it.
 
     Raises:
         InputError: There is no such file, it is larger than ``most`` bytes, or it is a folder, a

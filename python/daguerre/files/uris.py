@@ -23,10 +23,10 @@ class Folder:
     """Folder of a scene and further allowed folders, both with links resolved.
 
     Args:
-        scene: Path of the scene file, or of another that names files.
-        allow_dirs: Further folders whose files may be read.
-        what: Kind of the file that names others, for messages.
-        way: Way to name files elsewhere, for messages.
+        scene: Path of the scene file, or of another file that names files.
+        allow_dirs: Further folders from which files may be read.
+        what: Kind of the file that names files, for messages.
+        way: Advice on naming files elsewhere, for messages.
     """
 
     def __init__(

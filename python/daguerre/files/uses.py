@@ -1,4 +1,4 @@
-"""Tells whoever limits a reader what it uses: files, and bytes of decoded pictures."""
+"""Reports uses of a reader to its limits: files, and bytes of decoded pictures."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-#: Hears the name of a file before it is read, or the bytes of a picture after it was decoded.
+#: Receives the name of a file before it is read, or the bytes of a picture after decoding.
 Listener = Callable[[str | int], None]
 _listener: Listener | None = None
 
@@ -23,12 +23,12 @@ def heard_by(listener: Listener) -> Iterator[None]:
 
 
 def opens(path: str | os.PathLike[str]) -> None:
-    """Tells that a file is about to be read."""
+    """Reports that a file is about to be read."""
     if _listener is not None:
         _listener(os.fspath(path))
 
 
 def decoded(count: int) -> None:
-    """Tells that a picture of some bytes was decoded."""
+    """Reports the bytes of a decoded picture."""
     if _listener is not None:
         _listener(count)

@@ -76,7 +76,7 @@ class BriefRecord:
 def same(a: object, b: object) -> bool:
     """Whether two values are equal: numbers by value, NaN equals NaN, arrays by elements.
 
-    Types without their own comparison are compared by their pickled state.
+    Types that define no comparison are compared by their pickled state.
     """
     return _same(a, b, {})
 

@@ -2,7 +2,7 @@
 
 It refuses tags, anchors and aliases, which calibrations do not need, and through which a small file
 can grow without bounds or name Python objects. The exceptions are OpenCV's tag of matrices and its
-first line ``%YAML:1.0``, which is not valid YAML. Numbers are those of YAML 1.2: YAML 1.1 reads
+first line ``%YAML:1.0``, which is not valid YAML. Numbers follow YAML 1.2: YAML 1.1 reads
 ``1e-08``, as OpenCV and Python write it, as text.
 
 LibYAML finds the events of a text (PyYAML's own parser takes 30 times as long), and this file makes
@@ -28,7 +28,7 @@ OPENCV_MATRIX = "tag:yaml.org,2002:opencv-matrix"
 _OPENCV_HEAD = re.compile(r"\A\ufeff?%YAML:1\.0[^\n]*")
 #: Most levels of lists and mappings, as many as JSON's parser takes; LibYAML stops there, too.
 _DEEPEST = 1000
-_PARSER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # packages without LibYAML have the other
+_PARSER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # builds without LibYAML have SafeLoader
 _INT = re.compile(r"[-+]?[0-9]+")
 _FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
 _WORDS: dict[str, Any] = {

@@ -1,7 +1,7 @@
-"""Decodes a stranger's picture into a plain one, in a process apart.
+"""Decodes an untrusted picture into a plain file, in a process apart.
 
-Its program, :mod:`daguerre.pictures.decoder_program`, may crash, loop, or take too much memory:
-each ends in one error. It gets the rights of this process, and limits itself.
+The program, :mod:`daguerre.pictures.decoder_program`, may crash, loop, or take too much memory:
+each ends in one error. It has the rights of this process, and limits its resources.
 """
 
 from __future__ import annotations
@@ -43,16 +43,16 @@ def run(source: str | Path, wanted: Wanted, where: str, what: str) -> str:
     """Decodes a picture.
 
     Args:
-        source: Its file.
+        source: File of the picture.
         wanted: The plain picture.
         where: Place of the file, for messages.
-        what: Name of what it holds, such as "PIZ pixels".
+        what: Name of the content, such as "PIZ pixels", for messages.
 
     Returns:
-        Its standard output.
+        Standard output of the decoder.
 
     Raises:
-        InputError: It failed, crashed or took too long.
+        InputError: The decoder failed, crashed or took too long.
     """
     path = str(Path(source).absolute())
     numbers = (wanted.most, math.ceil(wanted.seconds), int(wanted.straight))
@@ -78,7 +78,7 @@ def run(source: str | Path, wanted: Wanted, where: str, what: str) -> str:
 
 
 def _package() -> str:
-    """Folder of OpenImageIO, which a program without site packages must be told."""
+    """Folder of OpenImageIO: the decoder, without site packages, gets it as an argument."""
     library = importlib.util.find_spec("OpenImageIO")
     assert library is not None
     assert library.origin is not None

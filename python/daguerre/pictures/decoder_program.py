@@ -1,4 +1,4 @@
-"""Program that decodes a picture into a plain one; it may crash by itself.
+"""Program that decodes a picture into a plain file; a crash ends this process alone.
 
 Run it as ``python -I -S decoder_program.py FORM IN OUT PACKAGE BYTES SECONDS STRAIGHT``. It imports
 nothing of Daguerre and little else, since each picture pays for every import. PACKAGE is the folder
@@ -15,11 +15,11 @@ from __future__ import annotations
 
 import sys
 
-TYPE_CHECKING = False  # the one of the module typing takes 4 ms to import
+TYPE_CHECKING = False  # typing.TYPE_CHECKING would take 4 ms to import
 if TYPE_CHECKING:
     import OpenImageIO as oiio
 
-#: Address space for the program itself, and what an unpacked file may have besides its pixels.
+#: Address space of the program, and bytes of an unpacked file besides its pixels.
 SPARE, BESIDE = 1 << 30, 64 << 20
 #: Threads, and copies of the pixels in memory.
 THREADS, COPIES = {"tiff": 1, "openexr": 4}, {"tiff": 2, "openexr": 3}

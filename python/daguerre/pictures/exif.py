@@ -74,7 +74,7 @@ def _lens_tags(metadata: Mapping[str, Any]) -> Tags:
         tags[41989] = (SHORT, (min(round(focal * scale), 65535),))
     if span := _focal_lengths(metadata.get("camera")):
         shortest, longest = (rational(round(focal, 1)) for focal in span)
-        # 0/0: the widest f-numbers are unknown, as a prescription has only the one in use.
+        # 0/0: the widest f-numbers are unknown, as a prescription has only the f-number in use.
         tags[42034] = (RATIONAL, (*shortest, *longest, 0, 0, 0, 0))
     return tags
 

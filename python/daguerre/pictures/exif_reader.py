@@ -67,7 +67,7 @@ class _Layout(NamedTuple):
 
 
 def exif_tags(block: Buffer) -> dict[str, Any]:
-    """Returns known tags by name; what is damaged or missing is left out.
+    """Returns known tags by name, without damaged ones.
 
     Args:
         block: Bytes of an EXIF block, which is a small TIFF file, or of a TIFF file.

@@ -42,8 +42,8 @@ def read_environment(
     Args:
         path: The file.
         notes: Receives a note if colours are converted (:mod:`.stated_colors`), or mixed with grey
-            as no light of Rec.709 has them.
-        is_data: Whether the numbers are no colours, such as those of a point spread: they stay.
+            because they lie outside of Rec.709.
+        is_data: Whether the numbers are no colours, as in a point spread, and are not converted.
 
     Returns:
         Linear RGB, float32, shape (H, W, 3), row 0 at the zenith.
@@ -64,7 +64,7 @@ def read_environment(
 
 
 def read_light(file: Path) -> tuple[NDArray[np.float32], Colors]:
-    """Reads a picture of light, upright, with the numbers of the file, and what they mean.
+    """Reads a picture of light, upright, with the numbers of the file and their colour encoding.
 
     Raises:
         InputError: The file cannot be read, or has no colour.
@@ -100,8 +100,8 @@ def _in_gamut(light: NDArray[np.float32], notes: Notes | None, name: str) -> NDA
             part = into_gamut(part)
         np.minimum(part, np.float32(MAX_LIGHT), out=light[row : row + _STRIPE])
     if count and notes is not None:
-        told = f"{count} pixels outside of the gamut of Rec.709 are mixed with grey"
-        notes.add(f"{told} of their luminance", name=name)
+        remark = f"{count} pixels outside of the gamut of Rec.709 are mixed with grey"
+        notes.add(f"{remark} of their luminance", name=name)
     return light
 
 
@@ -144,8 +144,8 @@ def _linear(file: Path) -> tuple[NDArray[np.float32], int, Colors]:
     with ExrReader(file) as reader:
         names = light_names(list(reader.channels), str(file))
         colors = of_exr(reader.facts, tuple(names))
-        told = _white_luminance(reader.facts)
-        colors = replace(colors, remarks=(*colors.remarks, *told))
+        remarks = _white_luminance(reader.facts)
+        colors = replace(colors, remarks=(*colors.remarks, *remarks))
         full = (reader.full_size[1], reader.full_size[0])
         most = MAX_ENVIRONMENT_BYTES
         check_size(reader.width, reader.height, 3, 4, str(file), most)

@@ -1,9 +1,9 @@
-"""Resamples panoramas of other formats into those of the scene.
+"""Resamples panoramas of other formats to the orientation and size of the scene's panorama.
 
 A sun of 0.53 degrees keeps its light within 2 %, wherever it is.
 
-Pixels near the poles of a panorama are narrow, and samples would miss them. So its rows are first
-smoothed to what they would be if all pixels were squares of one size; that keeps their light.
+Pixels near the poles of a panorama are narrow, and samples would miss them. So rows are smoothed
+first, as if all pixels were squares of one size; this keeps the light of each row.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.float32]
-#: Samples across a pixel of a small panorama, whose sun has few pixels.
+#: Samples across a pixel of a small panorama, in which the sun covers few pixels.
 _MOST = 4
 #: Rows of panoramas for which one sample is enough.
 _LARGE = 2048
@@ -24,7 +24,7 @@ _CHUNK = 1 << 16
 
 
 def resampled(image: Picture, turn: Array, rows: int) -> Picture:
-    """Resamples a panorama with +z of the dome at its centre into one with -z at its centre.
+    """Resamples a panorama with +z of the dome at its centre to have -z of the scene there.
 
     Args:
         image: Shape (H, W, 3).
@@ -57,7 +57,7 @@ def resampled(image: Picture, turn: Array, rows: int) -> Picture:
 
 
 def _smoothed(image: Picture) -> Picture:
-    """Averages each row over as many pixels as have the width of one at the equator."""
+    """Averages each row over the width, in radians, of a pixel at the equator."""
     height, width = image.shape[:2]
     made = np.empty(image.shape, np.float32)
     for row in range(height):

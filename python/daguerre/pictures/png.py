@@ -44,7 +44,7 @@ class PngWriter:
             path: File; use :func:`daguerre.files.atomic.atomic_path` for an atomic write.
             width: Columns, px.
             height: Rows, px.
-            metadata: Metadata of a frame, of which EXIF gets exposure and lens.
+            metadata: Metadata of a frame; EXIF gets exposure and lens from it.
             target: Name for messages; default: ``path``.
 
         Raises:

@@ -22,7 +22,7 @@ class Chunk(NamedTuple):
 
 
 def chunks(file: BinaryIO) -> Iterator[Chunk]:
-    """Reads chunks in order; a truncated one is not ``intact``."""
+    """Reads chunks in order; a truncated chunk is not ``intact``."""
     file.seek(SIGNATURE_BYTES)
     while len(head := file.read(8)) == 8:
         kind, at = head[4:], file.tell()

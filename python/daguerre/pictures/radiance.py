@@ -34,8 +34,8 @@ class RadianceHeader:
     """The header of a Radiance picture.
 
     Attributes:
-        gains: Factors of the stored numbers, shape (3,).
-        colors: How they mean light.
+        gains: Factors on the stored numbers, shape (3,).
+        colors: Colour encoding of the numbers.
         format_at: Place of the format's name in the file if the numbers are XYZ, else None.
     """
 
@@ -54,7 +54,7 @@ def read_header(file: Path) -> RadianceHeader:
     """Reads exposure and colours.
 
     Raises:
-        InputError: A line has no such number.
+        InputError: A line of the header has an invalid number.
     """
     gains, corners, format_at = np.ones(3), None, None
     for at, line in _lines(file):
@@ -80,7 +80,7 @@ def read_header(file: Path) -> RadianceHeader:
 
 
 def _lines(file: Path) -> Iterator[tuple[int, bytes]]:
-    """Lines of the header with their places, up to the empty one."""
+    """Lines of the header with their places, up to the empty line."""
     with opened(file) as stream:
         at = 0
         while at < _MOST:

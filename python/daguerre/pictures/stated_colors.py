@@ -45,12 +45,12 @@ _STRIPE = 64
 
 @dataclass(frozen=True)
 class Colors:
-    """How a file means its colours.
+    """Colour encoding of a file.
 
     Attributes:
         encoding: Curve, primaries and white of its numbers.
         stated_by: Attribute that states it; empty: none.
-        remarks: Sentences on what the header says and is not followed.
+        remarks: Sentences on statements of the header that are not followed.
     """
 
     encoding: Encoding = LINEAR
@@ -82,7 +82,7 @@ class Colors:
             notes.add(sentence, name=name)
 
     def light(self, values: Light, *, in_place: bool = False) -> Light:
-        """Linear Rec.709, which may be negative, of numbers of the file, shape (H, W, 3).
+        """Converts numbers of the file, shape (H, W, 3), to linear Rec.709, which may be negative.
 
         Args:
             values: The numbers.
@@ -122,22 +122,22 @@ def of_exr(facts: Mapping[str, Any], names: tuple[str, ...] = ()) -> Colors:
         facts: Values of its attributes.
         names: Channels of its colour; X, Y and Z are CIE XYZ, a single one is grey.
     """
-    told, remarks = _said(facts)
+    stated, remarks = _stated(facts)
     if len(set(names)) == 1:  # grey is grey by any primaries
-        told = {by: Encoding(one.srgb, one.gamma) for by, one in told.items()}
+        stated = {by: Encoding(space.srgb, space.gamma) for by, space in stated.items()}
     if tuple(name.rpartition(".")[2].upper() for name in names) == ("X", "Y", "Z"):
         return Colors(XYZ_D65, "channels X, Y, Z", tuple(remarks))
-    if not told:
+    if not stated:
         return Colors(remarks=tuple(remarks))
-    (by, first), *others = told.items()
+    (by, first), *others = stated.items()
     for other, encoding in others:
         if encoding != first and not _alike(encoding, first):
             remarks.append(f"{other} says {title_of(encoding)}, but {by} counts")
     return Colors(first, by, tuple(remarks))
 
 
-def _said(facts: Mapping[str, Any]) -> tuple[dict[str, Encoding], list[str]]:
-    """Encodings by the attributes that state them, the one that counts first; and remarks."""
+def _stated(facts: Mapping[str, Any]) -> tuple[dict[str, Encoding], list[str]]:
+    """Encodings by the attributes that state them, in order of precedence; and remarks."""
     found: dict[str, Encoding] = {}
     remarks: list[str] = []
     if facts.get(FLAG) == 1:

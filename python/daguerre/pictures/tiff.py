@@ -21,7 +21,7 @@ _PHOTOMETRIC, _CHILDREN = 262, 330
 #: Placeholder for the tag of the EXIF directory, which tifffile cannot write; this number is unused
 #: and is replaced afterwards.
 _PLACE = exif.EXIF_DIRECTORY + 1
-#: Types whose values are two numbers each.
+#: Types with two numbers per value.
 _PAIRS = (exif.RATIONAL, exif.SRATIONAL)
 
 

@@ -23,7 +23,7 @@ from .channels import same as same_value
 
 
 class Arithmetic:
-    """Operations between values; single channels are repeated to the size of the others."""
+    """Operations between values; single channels are repeated to the size of the other operands."""
 
     def __init__(self, baker: Baker) -> None:
         self.baker = baker

@@ -137,18 +137,20 @@ class Assembler:
         fields["anisotropy_texture"] = packed.slot
 
     def _halves(self, like: Value) -> Value:
-        """Picture of one half that lies as another picture."""
+        """Constant picture of 0.5 with the mapping of another picture."""
         return self._math.each(lambda v: v * 0 + 0.5, like[:1])
 
     def _film(self, thickness: Value, fields: Fields) -> None:
         """Thickness in nm: a share between a minimum of 0 and a maximum."""
-        one = thickness[0]
-        if not isinstance(one, Texel):
-            fields["iridescence_thickness_min_nm"] = min(max(_number(one), 0.0), 1e6)
+        share = thickness[0]
+        if not isinstance(share, Texel):
+            fields["iridescence_thickness_min_nm"] = min(max(_number(share), 0.0), 1e6)
             fields["iridescence_thickness_max_nm"] = fields["iridescence_thickness_min_nm"]
             return
-        most = min(max(float(one.values().max()), 1e-3), 1e6)
-        packed: Packed = self._packer.packed(self._math.multiply((one,), (1 / most,)), places=(1,))
+        most = min(max(float(share.values().max()), 1e-3), 1e6)
+        packed: Packed = self._packer.packed(
+            self._math.multiply((share,), (1 / most,)), places=(1,)
+        )
         slot: TextureSlot | None = packed.slot
         fields["iridescence_thickness_min_nm"] = 0.0
         fields["iridescence_thickness_max_nm"] = most * packed.factors[0]

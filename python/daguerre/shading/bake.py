@@ -1,8 +1,8 @@
 """Computes pictures from pictures, texel by texel, within a budget.
 
-Pictures that are combined must lie on the surface in the same way; then the result is exact up to
-the filter between texels. A smaller one is resampled to the size of the largest. Pictures that lie
-otherwise are replaced by their mean, with a note.
+Pictures with equal mappings are combined texel by texel; the result is exact up to the filter
+between texels. Smaller pictures are resampled to the size of the largest. Pictures with other
+mappings are replaced by their mean, with a note.
 """
 
 from __future__ import annotations
@@ -37,23 +37,23 @@ class Canvas(Protocol):
     """Texels of a surface on which all that is known about it can be computed."""
 
     def placed(self, channel: Channel) -> Channel:
-        """Coordinates, or a picture that lies otherwise, as texels of the canvas."""
+        """Resamples coordinates, or a picture with another mapping, to texels of the canvas."""
 
     def vector(self, name: str) -> Value | None:
-        """Coordinates of three axes by their name; None: they are not known."""
+        """Three-dimensional coordinates by name, such as positions; None: unknown."""
 
     def measure(self, point: Value, texels: float) -> None:
-        """Notes that a cell of a pattern of these coordinates needs some texels."""
+        """Notes that a cell of a pattern at these coordinates needs a number of texels."""
 
 
 class Baker:
     """Computes channels, and counts their bytes.
 
     Args:
-        notes: Receives notes on what is not exact.
+        notes: Receives notes on approximations.
         limit: Most bytes of computed pictures.
-        canvas: Texels on which pictures that lie differently, and coordinates, are combined; None:
-            they are not.
+        canvas: Texels that combine coordinates, and pictures of different mappings; None: they are
+            not combined.
     """
 
     def __init__(self, notes: Notes, limit: int = MAX_BYTES, canvas: Canvas | None = None) -> None:
@@ -66,7 +66,7 @@ class Baker:
 
         Args:
             function: Function that takes numbers or arrays (H, W), one for each channel.
-            channels: Its arguments.
+            channels: Arguments of the function.
 
         Raises:
             UnsupportedError: A channel is no number and no picture.
@@ -89,26 +89,26 @@ class Baker:
                 function, [channel for channel in channels if isinstance(channel, float)]
             )
         mapping = pictures[0].mapping
-        size = _largest([one for one in pictures if one.mapping == mapping])
+        size = _largest([picture for picture in pictures if picture.mapping == mapping])
         if not self._affords(size, count):
             return _numbers(function, [self._mean(channel, None) for channel in channels])
         arguments = [self._values(channel, mapping, size) for channel in channels]
         with np.errstate(all="ignore"):
             results = function(*arguments)
         name = pictures[0].plane.name
-        return tuple(Texel(Plane(_finite(one, size), name=name), mapping) for one in results)
+        return tuple(Texel(Plane(_finite(values, size), name=name), mapping) for values in results)
 
     def together(self, channels: Sequence[Channel]) -> tuple[Channel, ...]:
-        """Channels that lie in one way on the surface, if there is a canvas."""
+        """Channels with one mapping, if there is a canvas."""
         if self.canvas is None:
             return tuple(channels)
-        ways = {one.mapping for one in channels if isinstance(one, Texel)}
-        if len(ways) < 2 and not any(isinstance(one, Coordinate) for one in channels):
+        mappings = {channel.mapping for channel in channels if isinstance(channel, Texel)}
+        if len(mappings) < 2 and not any(isinstance(c, Coordinate) for c in channels):
             return tuple(channels)
-        return tuple(self.canvas.placed(one) for one in channels)
+        return tuple(self.canvas.placed(channel) for channel in channels)
 
     def resampled(self, channel: Channel, mapping: Mapping, size: tuple[int, int]) -> Channel:
-        """Picture of a given size that lies on the surface in a given way; a number stays one."""
+        """Picture of a given size and mapping; a number stays a number."""
         if not isinstance(channel, Texel) or channel.mapping != mapping:
             return self._mean(channel, mapping)
         if channel.plane.pixels.shape == size:
@@ -159,12 +159,12 @@ def resized(
 
 
 def _index(index: NDArray[np.int64], count: int, wrap: str) -> NDArray[np.int64]:
-    """Texels at the borders: those of the other side, or the last ones."""
+    """Index of a texel beyond a border: on the opposite side, or at the border."""
     return index % count if wrap == "repeat" else np.clip(index, 0, count - 1)
 
 
 def _largest(pictures: list[Texel]) -> tuple[int, int]:
-    heights, widths = zip(*(one.plane.pixels.shape for one in pictures), strict=True)
+    heights, widths = zip(*(picture.plane.pixels.shape for picture in pictures), strict=True)
     return max(heights), max(widths)
 
 
@@ -177,5 +177,5 @@ def _finite(values: object, size: tuple[int, int]) -> NDArray[np.float32]:
 
 def _numbers(function: Callable[..., Any], numbers: list[float]) -> tuple[float, ...]:
     with np.errstate(all="ignore"):
-        found = [float(one) for one in function(*(np.float64(number) for number in numbers))]
-    return tuple(one if np.isfinite(one) else 0.0 for one in found)
+        found = [float(result) for result in function(*(np.float64(number) for number in numbers))]
+    return tuple(result if np.isfinite(result) else 0.0 for result in found)

@@ -30,12 +30,12 @@ from .walks import moving_nodes, names_before
 if TYPE_CHECKING:
     from daguerre.shading.images import Images
 
-#: Nodes whose vector of two numbers is one of texture coordinates, and the name of the primvar.
+#: Default primvar of texture coordinates, and nodes that read images.
 _DEFAULT_SET = "st"
 _IMAGES = ("UsdUVTexture", "image", "tiledimage", "gltf_image", "gltf_colorimage", "gltf_normalmap")
 #: Most times at which a material that moves is evaluated.
 _MAX_TIMES = 1024
-#: Pieces between two keys where a material does not change evenly, and what counts as even.
+#: Pieces between two keys where a material does not change evenly, and the tolerance of even.
 _PIECES, _EVEN = 8, 1e-6
 #: Kinds of surfaces that are supported.
 SURFACES = (
@@ -144,15 +144,15 @@ def vertex_colors(graph: Graph) -> bool:
 
 
 def _times(graph: Graph) -> list[float]:
-    """Times of all keys; a value that jumps has one before each, too."""
+    """Times of all keys; a step also has a time just before each key."""
     found: set[float] = set()
     for node in graph.nodes.values():
-        for one in node.inputs.values():
-            if isinstance(one, Link) or not isinstance(one.value, Keys):
+        for given in node.inputs.values():
+            if isinstance(given, Link) or not isinstance(given.value, Keys):
                 continue
-            times = [float(time) for time in one.value.times]
+            times = [float(time) for time in given.value.times]
             found.update(times)
-            if one.value.interpolation == "step":
+            if given.value.interpolation == "step":
                 found.update(float(np.nextafter(time, -np.inf)) for time in times[1:])
     return sorted(found)
 
@@ -160,7 +160,7 @@ def _times(graph: Graph) -> list[float]:
 def over_time(
     rest: Material, at: Callable[[float], Material], times: Sequence[float], context: Context
 ) -> Material:
-    """Material with keys in the fields that change; textures stay those of the scene's time."""
+    """Material with keys in the fields that change; textures stay as at the scene's time."""
     if len(times) > _MAX_TIMES:
         context.notes.add(f"a material with more than {_MAX_TIMES} keys keeps only some of them")
         times = [times[i] for i in np.linspace(0, len(times) - 1, _MAX_TIMES).astype(int)]
@@ -177,11 +177,11 @@ def over_time(
     assert isinstance(rest.kind, Gltf)
     for name, value in _numbers(rest).items():
         row = [known[time][name] for time in ordered]
-        if any(one != row[0] for one in row) or row[0] != value:
+        if any(entry != row[0] for entry in row) or row[0] != value:
             moves = isinstance(value, float | tuple) and len(ordered) > 1
             if moves and name not in _FIXED:
                 changed[name] = keys(zip(ordered, row, strict=True))
-            elif any(one != row[0] for one in row):
+            elif any(entry != row[0] for entry in row):
                 context.notes.add(f"a material's '{name}' keeps its value at the scene's time")
     return replace(rest, kind=replace(rest.kind, **changed))
 

@@ -1,6 +1,6 @@
 """Values of shading: one to four channels, each a number, a picture, or a coordinate.
 
-Sums and products with numbers are kept as factors, so that a picture stays what it is in its file.
+Sums and products with numbers are kept as factors, so that a picture keeps the numbers of its file.
 Everything else between pictures is computed for each texel (:mod:`.bake`).
 """
 
@@ -31,7 +31,7 @@ class Plane:
     Attributes:
         pixels: Shape (H, W), uint8 or float32, row 0 on top.
         srgb: Whether values are encoded by sRGB's curve.
-        source: Picture with all channels, shape (H, W, C), of which this is number ``index``.
+        source: Picture with all channels, shape (H, W, C), with this plane as channel ``index``.
         name: Name of the file.
     """
 
@@ -58,7 +58,7 @@ class Plane:
 
 @dataclass(frozen=True)
 class Mapping:
-    """How a picture lies on a surface.
+    """Mapping of a picture to a surface.
 
     Attributes:
         primvar: Name of the texture coordinates, with (0, 0) at the bottom left.
@@ -125,7 +125,7 @@ def coordinates(primvar: str) -> Value:
 
 
 def fit(value: Value, size: int) -> Value:
-    """Changes the number of channels: one is repeated, opacity is added, the last are dropped."""
+    """Changes the number of channels: repeats a single channel, adds opacity, drops the last."""
     if len(value) == 1:
         alike = value * min(size, 3)
         return (*alike, 1.0)[:size] if size == 4 else alike

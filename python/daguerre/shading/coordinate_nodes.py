@@ -20,7 +20,7 @@ _OPACITIES = ("displayOpacity",)
 
 
 def texture_coordinates(given: Arguments) -> Value:
-    """MaterialX texcoord: set 0 is ``st``, the others are ``st1``, ``st2``, ..."""
+    """MaterialX texcoord: set 0 is ``st``, further sets are ``st1``, ``st2``, ..."""
     index = int(given.number("index", 0.0))
     return fit(coordinates(f"st{index}" if index else "st"), max(given.size, 2))
 
@@ -86,9 +86,9 @@ def rotate(given: Arguments) -> Value:
 def placed_by_gltf(given: Arguments, *, ordered: bool = True) -> Value:
     """Coordinates of the glTF nodes.
 
-    They scale and turn coordinates instead of the picture, so that their graphs pass the inverse
-    of each input to place2d; offsets are those of coordinates with (0, 0) at the top left. The
-    default order is that of the definitions, which is another for colours with opacity.
+    The nodes scale and turn coordinates instead of the picture, so their graphs pass the inverse
+    of each input to place2d; offsets refer to coordinates with (0, 0) at the top left. The default
+    order follows the definitions, and differs for colours with opacity.
 
     Args:
         given: Inputs of the node.

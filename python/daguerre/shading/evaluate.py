@@ -1,7 +1,7 @@
 """Evaluates a graph of shading nodes from the inputs of its surface.
 
 Each node is evaluated once, without recursion, so that graphs may be deep. A node that is not
-supported counts as not connected: the input that it feeds keeps its own default, and one note
+supported counts as not connected: the input that it feeds keeps the input's default, and one note
 names the node.
 """
 
@@ -31,7 +31,7 @@ _Key = tuple[str, str]
 
 
 class Pictures(Protocol):
-    """Source of pictures; :class:`daguerre.shading.images.Images` is one."""
+    """Source of pictures; for example :class:`daguerre.shading.images.Images`."""
 
     def picture(self, place: str, path: str, *, is_data: bool = False) -> Any:
         """Decodes the picture of an asset path; None: it is missing."""
@@ -194,7 +194,7 @@ class Evaluator:
         self._context.notes.add(sentence)
 
     def still(self, moving: frozenset[str]) -> dict[str, Outputs]:
-        """Values of nodes that are not among the moving ones."""
+        """Values of nodes that do not move."""
         return {name: found for name, found in self._done.items() if name not in moving}
 
     def linked(self, link: Link) -> Value | None:
@@ -214,12 +214,14 @@ class Evaluator:
             if top in self._done or node is None:
                 waiting.pop()
                 continue
-            links = [one.node for one in node.inputs.values() if isinstance(one, Link)]
-            missing = [one for one in links if one not in self._done and one in self._graph.nodes]
+            links = [value.node for value in node.inputs.values() if isinstance(value, Link)]
+            missing = [
+                name for name in links if name not in self._done and name in self._graph.nodes
+            ]
             if missing and top not in entered:
                 entered.add(top)
                 waiting += missing
-                if any(one in entered for one in missing):
+                if any(name in entered for name in missing):
                     raise InputError(f"{node.place}: connections form a cycle")
                 continue
             waiting.pop()
@@ -231,7 +233,7 @@ class Evaluator:
             self._context.notes.add(f"shading node {short(node.kind)} is not supported")
             return None
         values = {
-            name: self.linked(one) for name, one in node.inputs.items() if isinstance(one, Link)
+            name: self.linked(link) for name, link in node.inputs.items() if isinstance(link, Link)
         }
         try:
             return _filled(operation(Arguments(node, self._context, values)), node)
@@ -252,7 +254,7 @@ class _Lazy(Mapping[str, "Value | None"]):
 
     def __init__(self, evaluator: Evaluator, node: Node) -> None:
         self._evaluator = evaluator
-        self._links = {name: one for name, one in node.inputs.items() if isinstance(one, Link)}
+        self._links = {name: link for name, link in node.inputs.items() if isinstance(link, Link)}
 
     def __getitem__(self, name: str) -> Value | None:
         found = self._evaluator.linked(self._links[name])

@@ -47,7 +47,7 @@ class Textures:
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
         self._textures: dict[Any, int] = {}
-        self._kept: list[Any] = []  # arrays whose identity is a key
+        self._kept: list[Any] = []  # arrays with ids in use as keys
 
     def texture(
         self,
@@ -109,10 +109,10 @@ class Images(Textures):
         """Decodes the picture of an asset path.
 
         Args:
-            place: Place that names it, for messages.
+            place: Place that names the picture, for messages.
             path: The asset path.
-            is_data: Whether its numbers are no colours, or the scene itself says which: they stay
-                as they are in the file. Else they are converted if the file states primaries.
+            is_data: Whether the numbers are no colours, or the scene states their colour space:
+                they are not converted. Else they are converted if the file states primaries.
 
         Returns:
             The picture; None, and a note: there is no such file, or its format is unknown.
@@ -152,8 +152,8 @@ class Images(Textures):
     def prefetch(self, places: Mapping[str, str]) -> None:
         """Begins to decode the pictures of asset paths; ``places`` name each, for messages.
 
-        Whatever is wrong with one is an error where ``picture`` asks for it. ``close`` ends what
-        is under way.
+        A fault of a picture is an error of the later call of ``picture``. ``close`` ends running
+        decodes.
         """
         for path, place in places.items():
             if len(self._begun) >= _MOST_BEGUN:
@@ -225,7 +225,7 @@ class Images(Textures):
         colors = next(iter(tiles.values())).colors
         if any(tile.colors != colors for tile in tiles.values()):
             tiles, colors = self._alike(tiles), PLAIN
-        pixels, grid, halved = udim.stitched({n: one.pixels for n, one in tiles.items()})
+        pixels, grid, halved = udim.stitched({n: tile.pixels for n, tile in tiles.items()})
         if halved:
             self._notes.add("UDIM tiles are halved in size, because together they are too large")
         name = path.rsplit("/", 1)[-1]

@@ -15,7 +15,7 @@ _MOST_STRETCHED = 0.98
 
 
 def normal_of(given: Arguments, name: str) -> Value | None:
-    """Normal in the frame of texture coordinates; None: that of the mesh."""
+    """Normal in the frame of texture coordinates; None: the mesh's."""
     if not isinstance(given.node.inputs.get(name), Link):
         return None
     found = given.given(name)

@@ -37,7 +37,7 @@ def scattered(
 
 
 def coated(given: Arguments, base: Value, coat: Value, tint: Value) -> Value:
-    """Colour of what lies under a tinted coat."""
+    """Colour of a base under a tinted coat."""
     if not is_set(coat) or numbers_of(tint) == (1.0, 1.0, 1.0):
         return base
     arithmetic = given.context.math

@@ -13,7 +13,7 @@ Array = NDArray[Any]
 
 
 def looked_up(texel: Texel, u: object, v: object) -> Array:
-    """Values of a picture at coordinates with (0, 0) at the bottom left, by its own filter."""
+    """Samples a picture at coordinates with (0, 0) at the bottom left, by its filter."""
     a, b, c, d, e, f = texel.mapping.transform
     u, v = np.asarray(u, np.float64), np.asarray(v, np.float64)
     values = texel.values()

@@ -21,9 +21,9 @@ class Picture:
     Attributes:
         pixels: Shape (H, W, 1..4), uint8 or float32, row 0 on top.
         name: Name of its file.
-        transform: Transform from texture coordinates to those of the picture, for UDIM.
+        transform: Transform from texture coordinates to picture coordinates, for UDIM.
         tiled: Whether it was stitched from tiles.
-        colors: Meaning of its colours, by its file.
+        colors: Colour encoding that the file states.
     """
 
     pixels: NDArray[Any]
@@ -38,7 +38,7 @@ class Picture:
         return self.colors.is_plain or self.pixels.shape[2] < 3
 
     def light(self) -> Picture:
-        """The picture with colours converted to linear Rec.709 from what its file states."""
+        """The picture with colours converted to linear Rec.709 from the file's encoding."""
         made = self.pixels.astype(np.float32)
         made[:, :, :3] = self.colors.light(made[:, :, :3])
         return replace(self, pixels=freeze_in_place(made), colors=PLAIN)

@@ -42,11 +42,11 @@ def decoded(data: bytes, name: str, where: str) -> tuple[NDArray[Any], Colors]:
         where: Place and path, for messages.
 
     Returns:
-        Pixels as in the file, shape (H, W, 1..4), uint8 or float32; and what their colours mean.
+        Pixels as in the file, shape (H, W, 1..4), uint8 or float32; and their colour encoding.
 
     Raises:
-        InputError: It is damaged or too large.
-        UnknownFormat: It is no picture, by its name either.
+        InputError: The picture is damaged or too large.
+        UnknownFormat: Neither the bytes nor the name are a picture's.
     """
     if images.is_of_gltf(data):
         return images.decode(data, where), PLAIN
@@ -112,7 +112,7 @@ def bytes_of(file: Path, where: str) -> bytes:
 
 @contextmanager
 def opened_package(file: Path, where: str) -> Iterator[zipfile.ZipFile]:
-    """Opens a package; damaged ones are errors."""
+    """Opens a package; a damaged package is an error."""
     try:
         with opened(file) as stream, zipfile.ZipFile(stream) as archive:
             yield archive

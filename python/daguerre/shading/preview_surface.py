@@ -1,9 +1,9 @@
 """UsdPreviewSurface as a surface of the renderer.
 
-Opacity: with a threshold, a mask. In the mode "presence", or where a picture gives it, the share of
-the surface that is there. A constant opacity in the mode "transparent" is a clear thin sheet that
-keeps its highlights, as the specification asks: its diffuse light is that of the colour times the
-opacity, and the rest goes straight through.
+Opacity: with a threshold, a mask. In the mode "presence", or with a picture of opacity, the covered
+share of the surface. A constant opacity in the mode "transparent" is a clear thin sheet that keeps
+its highlights, as the specification asks: its diffuse colour is multiplied by the opacity, and the
+rest goes straight through.
 
 Source: OpenUSD, "UsdPreviewSurface Specification"
 (https://openusd.org/release/spec_usdpreviewsurface.html).
@@ -27,7 +27,7 @@ def preview_surface(given: Arguments) -> Surface:
     surface.ior = refraction_index(given, given.number("ior", 1.5))
     surface.roughness = given.value("roughness", (0.5,))
     if given.number("useSpecularWorkflow", 0.0):
-        surface.ior = 0.0  # reflects everything, which the colour scales to that of the workflow
+        surface.ior = 0.0  # reflects all light; specularColor scales it
         surface.specular_color = given.value("specularColor", (0.0, 0.0, 0.0))
     else:
         surface.metallic = given.value("metallic", (0.0,))

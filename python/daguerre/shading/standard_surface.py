@@ -1,7 +1,7 @@
 """MaterialX's standard_surface as a surface of the renderer.
 
-Coat and diffuse colours are multiplied where the coat lies; subsurface scattering is diffuse light
-of its colour; a transmitted colour without a depth tints, with one it absorbs.
+Coat and diffuse colours are multiplied where the coat is; subsurface scattering is diffuse light
+of its colour; a transmission colour without a depth tints, with a depth it absorbs.
 
 Source: Georgiev et al., "Autodesk Standard Surface" 1.0.1
 (https://autodesk.github.io/standard-surface/); its definition in MaterialX 1.39.

@@ -16,7 +16,7 @@ class Surface:
     """Inputs of ``daguerre.scene.materials.Gltf`` as values; the names are the same.
 
     Attributes:
-        normal: Normal in the frame of the texture coordinates, or None: that of the mesh.
+        normal: Normal in the frame of the texture coordinates, or None: the mesh's.
         alpha_mode: Opaque, mask or blend.
         volume: Whether light that is transmitted is refracted into a volume.
     """

@@ -228,7 +228,7 @@ def _affine(uv: Value, then: Six) -> tuple[str, Six]:
     """Primvar and transform of coordinates, followed by another transform.
 
     Raises:
-        UnsupportedError: The coordinates are not affine in those of one primvar.
+        UnsupportedError: The coordinates are not affine in one primvar.
     """
     rows, primvars = [], set()
     for channel in fit(uv, 2):
@@ -249,7 +249,7 @@ def _affine(uv: Value, then: Six) -> tuple[str, Six]:
 
 
 def _on_surface(given: Arguments, plane: Plane, lie: Lie, outside: Channel) -> Channel:
-    """A plane as it lies on the surface; with a border of one texel where it is not repeated."""
+    """A plane with its mapping; with a border of one texel where it is not repeated."""
     if not lie.primvar:
         return _texel(plane, lie)
     axes = tuple(name == "black" for name in lie.wrap)
@@ -288,7 +288,7 @@ def _bordered(given: Arguments, plane: Plane, axes: tuple[bool, bool], border: f
 
 
 def _texel(plane: Plane, lie: Lie) -> float:
-    """Value of a picture at constant coordinates: that of the nearest texel."""
+    """Value of a picture at constant coordinates: the nearest texel."""
     height, width = plane.pixels.shape
     s, t = lie.transform[2], lie.transform[5]
     index = []
@@ -299,5 +299,5 @@ def _texel(plane: Plane, lie: Lie) -> float:
         i = i % (2 * count) if how == "mirror" else i
         i = 2 * count - 1 - i if how == "mirror" and i >= count else i
         index.append(i % count if how == "repeat" else min(max(i, 0), count - 1))
-    one = replace(plane, pixels=plane.pixels[index[0] : index[0] + 1, index[1] : index[1] + 1])
-    return float(one.linear()[0, 0])
+    texel = replace(plane, pixels=plane.pixels[index[0] : index[0] + 1, index[1] : index[1] + 1])
+    return float(texel.linear()[0, 0])

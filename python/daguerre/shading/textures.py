@@ -68,10 +68,10 @@ class Packer:
                 tuple(min(max(float(c), 0.0), most) for c in plain if isinstance(c, float))
             )
         mapping = pictures[0].mapping
-        same = [one.plane.pixels.shape for one in pictures if one.mapping == mapping]
+        same = [picture.plane.pixels.shape for picture in pictures if picture.mapping == mapping]
         size = max(height for height, _ in same), max(width for _, width in same)
         alike = [self._baker.resampled(channel, mapping, size) for channel in plain]
-        factors, planes = zip(*(self._factored(one, most) for one in alike), strict=True)
+        factors, planes = zip(*(self._factored(picture, most) for picture in alike), strict=True)
         if all(plane is None for plane in planes):
             return Packed(factors)
         return Packed(factors, self._slot(planes, places or range(len(planes)), mapping))
@@ -112,7 +112,7 @@ class Packer:
         return TextureSlot(texture, uv_set, top_down(mapping.transform))
 
     def _texture(self, planes: Sequence[Plane | None], mapping: Mapping) -> int:
-        """Texture of planes; None is a plane of ones."""
+        """Texture of planes; None: filled with 1."""
         encoded = _common_curve(planes)
         key = (tuple(None if plane is None else plane.key for plane in planes), encoded)
         found = self._images.known(

@@ -38,13 +38,13 @@ class Grid:
 
     @property
     def transform(self) -> Six:
-        """Transform from texture coordinates to those of the stitched picture."""
+        """Transform from texture coordinates to coordinates of the stitched picture."""
         across, up = 1 / self.columns, 1 / self.rows
         return across, 0.0, -self.u * across, 0.0, up, -self.v * up
 
 
 def tile_numbers(names: list[str], pattern: str) -> dict[int, str]:
-    """Names of a folder that are tiles of a pattern such as ``wood.<UDIM>.png``, by number."""
+    """Tiles in a folder, with names of a pattern such as ``wood.<UDIM>.png``, by number."""
     before, after = pattern.split(MARK, 1)
     form = re.compile(re.escape(before) + r"(\d{4})" + re.escape(after) + r"\Z")
     found = {int(match[1]): name for name in names if (match := form.match(name))}
@@ -90,13 +90,13 @@ def stitched(tiles: Mapping[int, Pixels], limit: int = MAX_BYTES) -> tuple[Pixel
 
 
 def _alike(tile: Pixels, size: tuple[int, int], channels: int, floats: bool) -> Pixels:
-    """Tile with the size, number of channels and type of the others."""
+    """Converts a tile to the common size, number of channels and type."""
     if tile.shape[2] in (1, 2) and channels > 2:
         grey = np.repeat(tile[:, :, :1], 3, axis=2)
         tile = np.concatenate([grey, tile[:, :, 1:]], axis=2)
     if tile.shape[2] < channels:
-        one = 255 if tile.dtype == np.uint8 else 1
-        opaque = np.full((*tile.shape[:2], channels - tile.shape[2]), one, tile.dtype)
+        full = 255 if tile.dtype == np.uint8 else 1
+        opaque = np.full((*tile.shape[:2], channels - tile.shape[2]), full, tile.dtype)
         tile = np.concatenate([tile, opaque], axis=2)
     if floats and tile.dtype == np.uint8:
         tile = tile.astype(np.float32) / np.float32(255)

@@ -9,15 +9,15 @@ from daguerre.shading.materialx.graph import Constant, Graph, Link
 def names_before(graph: Graph, ignored: frozenset[str]) -> list[str]:
     """Names of the nodes that the surface uses, but not by the ignored inputs.
 
-    Those of the colour come first, then those of the other inputs in the order of their names.
+    Nodes of the colour come first, then nodes of the other inputs in the order of their names.
     """
     surface = graph.nodes.get(graph.surface)
     if surface is None:
         return []
     links = [
-        one.node
-        for name, one in sorted(surface.inputs.items(), key=_color_first)
-        if isinstance(one, Link) and name not in ignored
+        value.node
+        for name, value in sorted(surface.inputs.items(), key=_color_first)
+        if isinstance(value, Link) and name not in ignored
     ]
     order: dict[str, None] = {}
     waiting = links[::-1]
@@ -27,7 +27,7 @@ def names_before(graph: Graph, ignored: frozenset[str]) -> list[str]:
         if node is None or name in order:
             continue
         order[name] = None
-        inner = [one.node for one in node.inputs.values() if isinstance(one, Link)]
+        inner = [value.node for value in node.inputs.values() if isinstance(value, Link)]
         waiting += inner[::-1]
     return list(order)
 
@@ -37,14 +37,14 @@ def _color_first(item: tuple[str, Constant | Link]) -> tuple[bool, str]:
 
 
 def moving_nodes(graph: Graph) -> frozenset[str]:
-    """Names of the nodes that have keys among their inputs, or depend on one that has."""
+    """Names of the nodes that have keys among their inputs, or depend on a node with keys."""
     users: dict[str, list[str]] = {}
     waiting = []
     for name, node in graph.nodes.items():
-        for one in node.inputs.values():
-            if isinstance(one, Link):
-                users.setdefault(one.node, []).append(name)
-            elif isinstance(one.value, Keys):
+        for value in node.inputs.values():
+            if isinstance(value, Link):
+                users.setdefault(value.node, []).append(name)
+            elif isinstance(value.value, Keys):
                 waiting.append(name)
     found: set[str] = set()
     while waiting:

@@ -95,7 +95,7 @@ def _frame(lens: Lens, given: tuple[float, float] | None) -> Frame:
 
 
 def _focal_lengths(lens: Lens) -> list[float]:
-    """Focal lengths of a zoom: those of its file, and steps between them; empty for others."""
+    """Focal lengths of a zoom: positions of its file, and steps between them; empty for primes."""
     if lens.zoom_range_mm is None:
         return []
     found = [p.efl for p in positions(lens)]
@@ -114,5 +114,5 @@ def _at(lens: Lens, focal_lengths: list[float]) -> list[Lens]:
 
 def _best(settings: list[Geometry]) -> str:
     """The model with the smaller residual at its worst focal length."""
-    worst = {m: max(one.distortion[m].rms for one in settings) for m in (POLY5, PTLENS)}
+    worst = {m: max(setting.distortion[m].rms for setting in settings) for m in (POLY5, PTLENS)}
     return POLY5 if worst[POLY5] < max(SAME, worst[PTLENS]) else PTLENS

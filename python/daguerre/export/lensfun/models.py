@@ -1,6 +1,6 @@
 """The models of lensfun, fitted by linear least squares.
 
-Editors ask where a point of the corrected picture is in the lens's picture, so the models map
+Editors look up each point of the corrected picture in the lens's picture, so the models map
 corrected radii to real ones:
 
 ``poly5``: real = r (1 + k1 r^2 + k2 r^4)

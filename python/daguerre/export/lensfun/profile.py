@@ -38,7 +38,7 @@ class LensfunProfile(BriefRecord):
     @property
     def distortion(self) -> tuple[Fit, ...]:
         """Distortion by focal length, with residuals in px at 24 MP."""
-        return tuple(one.distortion[self.model] for one in self.geometry)
+        return tuple(setting.distortion[self.model] for setting in self.geometry)
 
     @property
     def residual_px(self) -> float:

@@ -23,7 +23,7 @@ HEIGHTS = 24  # from axis to corner
 LEAST = 8  # heights with chief rays that a fit needs
 LIGHTS = 12  # heights of light
 GRID = 64  # rays across the pupil
-#: Response of a common camera, whose red, green and blue count.
+#: Response of a common camera: its red, green and blue weight the wavelengths.
 SENSOR = "sony-a7r-ii"
 BANDS_NM = np.arange(410.0, 691.0, 20.0)
 STOP = 8.0  # for distortion and colour; wide open if the lens is slower

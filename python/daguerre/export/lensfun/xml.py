@@ -31,16 +31,16 @@ def as_xml(profile: LensfunProfile) -> str:
     _named(lens, **{"aspect-ratio": aspect}, type="rectilinear")
     ends = profile.geometry[0].focal_mm, profile.geometry[-1].focal_mm
     ET.SubElement(lens, "focal", min=_short(ends[0]), max=_short(ends[1]))
-    widest = min(one.f_stop for one in profile.vignetting)
+    widest = min(light.f_stop for light in profile.vignetting)
     ET.SubElement(lens, "aperture", min=_short(widest))
     calibration = ET.SubElement(lens, "calibration")
     for line in remarks(profile):
         calibration.append(ET.Comment(f" {line} "))
-    for one in profile.geometry:
-        fit = one.distortion[profile.model]
-        _terms(calibration, "distortion", [fit], model=profile.model, focal=_short(one.focal_mm))
-    for one in profile.geometry:
-        _terms(calibration, "tca", [one.red, one.blue], model="poly3", focal=_short(one.focal_mm))
+    for row in profile.geometry:
+        fit = row.distortion[profile.model]
+        _terms(calibration, "distortion", [fit], model=profile.model, focal=_short(row.focal_mm))
+    for row in profile.geometry:
+        _terms(calibration, "tca", [row.red, row.blue], model="poly3", focal=_short(row.focal_mm))
     for light in profile.vignetting:
         _terms(calibration, "vignetting", [light.fit], model="pa", **_setting(light))
     ET.indent(root, "    ")
@@ -51,10 +51,10 @@ def remarks(profile: LensfunProfile) -> list[str]:
     """Lines on the residuals of a profile, for its file and for people."""
     well = "" if profile.fits else ": no model of lensfun fits this lens to 0.3 px"
     lines = [f"residuals at 24 MP, RMS over the frame (largest); {profile.model}{well}"]
-    for one in profile.geometry:
-        fits = {"distortion": one.distortion[profile.model], "red": one.red, "blue": one.blue}
+    for row in profile.geometry:
+        fits = {"distortion": row.distortion[profile.model], "red": row.red, "blue": row.blue}
         texts = (f"{name} {fit.rms:.2f} ({fit.largest:.2f}) px" for name, fit in fits.items())
-        lines.append(f"{_short(one.focal_mm)} mm: {', '.join(texts)}")
+        lines.append(f"{_short(row.focal_mm)} mm: {', '.join(texts)}")
     rms = max(light.fit.rms for light in profile.vignetting)
     largest = max(light.fit.largest for light in profile.vignetting)
     lines.append(f"vignetting: at most {rms:.2f} ({largest:.2f}) EV")

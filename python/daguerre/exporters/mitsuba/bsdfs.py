@@ -48,7 +48,7 @@ _D_NM = 587.56
 
 
 class Bsdfs:
-    """BSDFs of a file, one for each look that is used."""
+    """BSDFs of a file: one BSDF for each look in use."""
 
     def __init__(self, root: Element, folder: OutgoingFolder, notes: Notes) -> None:
         self._root, self._notes = root, notes
@@ -150,10 +150,10 @@ class Bsdfs:
         add_value(bsdf, "float", "eta", max(surface.ior, 1 + _LEAST_STEP))
 
     def _add_rough_plastic(self, parent: Element, surface: Plastic, name: str) -> None:
-        """Adds a coat on a base that is as much brighter as Mitsuba loses there (``Loss``).
+        """Adds a coat on a base that is brighter by the light that Mitsuba loses (``Loss``).
 
         Mitsuba's base depends more on the angle than ours, the rougher the more. So a part of it is
-        a diffuse surface, whose share the coat's reflection makes up for.
+        a diffuse surface, and the coat's reflection makes up for the share of this part.
         """
         rough, share = surface.rough, 0.0
         assert not isinstance(rough.u, Picture)

@@ -22,7 +22,7 @@ _WHOLE = 1e-3
 
 @dataclass(frozen=True)
 class _Window:
-    """Window of a centred film, px: Mitsuba's thin lens has no shift of its own.
+    """Window of a centred film, px: Mitsuba's thin lens has no shift.
 
     Attributes:
         size: Width and height of the film.
@@ -34,7 +34,7 @@ class _Window:
 
     @classmethod
     def of(cls, view: View, resolution: tuple[int, int], notes: Notes) -> _Window:
-        """Finds the window of a shift; that is rounded to whole pixels."""
+        """Finds the window of a shift, which is rounded to whole pixels."""
         pitches = (side / count for side, count in zip(view.film_mm, resolution, strict=True))
         shift = [mm / pitch for mm, pitch in zip(view.shift_mm, pitches, strict=True)]
         right, up = (round(pixels) for pixels in shift)

@@ -35,17 +35,17 @@ def add_lights(
 ) -> None:
     """Adds all lamps."""
     for light, transform in lights:
-        one = plain(light, notes)
-        if isinstance(one, SphereLight):
-            _add_ball(root, one, transform)
-        elif isinstance(one, DirectionalLight):
+        lamp = plain(light, notes)
+        if isinstance(lamp, SphereLight):
+            _add_ball(root, lamp, transform)
+        elif isinstance(lamp, DirectionalLight):
             emitter = add(root, "emitter", type="directional")
             add_point(emitter, "vector", "direction", -turned(transform, "-z")[:3, 2])
-            add_rgb(emitter, "irradiance", one.illuminance)
-        elif isinstance(one, SpotLight):
-            _add_spot(root, one, transform, folder, notes)
+            add_rgb(emitter, "irradiance", lamp.illuminance)
+        elif isinstance(lamp, SpotLight):
+            _add_spot(root, lamp, transform, folder, notes)
         else:
-            _add_point_lamp(root, one, transform, folder, notes)
+            _add_point_lamp(root, lamp, transform, folder, notes)
 
 
 def add_environment(root: Element, environment: Environment | None, folder: OutgoingFolder) -> None:
@@ -72,7 +72,7 @@ def add_environment(root: Element, environment: Environment | None, folder: Outg
 def _add_point_lamp(
     root: Element, light: PointLight, transform: Array, folder: OutgoingFolder, notes: Notes
 ) -> None:
-    """Adds a point lamp; one whose profile is within a cone is a spot light with a picture."""
+    """Adds a point lamp; a profile within a cone becomes a spot light with a picture."""
     if light.profile is not None:
         outer = reach_of(light.profile)
         if outer <= _WIDEST:
@@ -109,7 +109,7 @@ def _add_spot(
 
 @dataclass(frozen=True)
 class _Beam:
-    """A spot light of Mitsuba whose falloff is a picture on a plane across its axis.
+    """A spot light of Mitsuba with its falloff as a picture on a plane across its axis.
 
     Attributes:
         intensity: Intensity, cd, at a factor of 1.
@@ -136,7 +136,7 @@ class _Beam:
         return np.asarray(plane @ turned(self.transform, "+z")[:3, :3].T @ lamp)
 
     def add(self, root: Element, factors: NDArray[Any], folder: OutgoingFolder) -> None:
-        """Adds the light; ``factors``: those of the texels, shape (N * N, 1 or 3)."""
+        """Adds the light; ``factors`` on its intensity by texel, shape (N * N, 1 or 3)."""
         count = self._count
         emitter = add(root, "emitter", type="spot")
         add_matrix(emitter, "to_world", turned(self.transform, "+z"))

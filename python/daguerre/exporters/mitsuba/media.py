@@ -1,4 +1,4 @@
-"""Media of Mitsuba: even ones, with Henyey-Greenstein lobes."""
+"""Media of Mitsuba: homogeneous, with Henyey-Greenstein lobes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Media:
     """Media of a file.
 
     Attributes:
-        used: Whether there is one, so that the integrator must know of them.
+        used: Whether the scene has a medium, so that the integrator must sample media.
     """
 
     def __init__(self, fog: Medium | None, notes: Notes) -> None:
@@ -56,7 +56,7 @@ class Media:
 
 
 def _add_phase(parent: Element, lobes: tuple[tuple[float, float], ...]) -> None:
-    """Adds a lobe, or a blend of the first one with the rest."""
+    """Adds a lobe, or a blend of the first lobe with the rest."""
     (g, weight), *rest = lobes
     if not rest:
         phase = add(parent, "phase", type="hg")

@@ -1,14 +1,14 @@
 """Light that Mitsuba's ``roughplastic`` loses under its coat, and bases that make up for it.
 
-Mitsuba counts no light that facets block: of diffuse light from outside its coat lets T in, where a
-coat that keeps all energy lets 1 - M, all that is not reflected; and inside, the coat reflects R of
-the base's light, which is less than the K that keeps all. A base of colour p shows T^2 p / (1 - R),
-or T^2 p / (1 - p R) where it is nonlinear; ours has 1 - M in place of T and K in place of R. A
-brighter base makes up for it in diffuse light. Its dependence on the angle stays: at a roughness of
-0.2 Mitsuba's base is 2 % brighter head on, at 0.6 it is 10 %, and at 1 it is 22 %.
+Mitsuba drops light that facets block. Its coat lets a part T of diffuse light in, where a coat that
+keeps all energy lets in all but the reflected part, 1 - M. Inside, its coat reflects a part R of
+the base's light, less than the part K of a coat that keeps all energy. A base of colour p shows
+T^2 p / (1 - R), or T^2 p / (1 - p R) where it is nonlinear; ours has 1 - M in place of T and K in
+place of R. A brighter base makes up for the loss in diffuse light. Its dependence on the angle
+stays: at a roughness of 0.2 Mitsuba's base is 2 % brighter head on, at 0.6 10 %, at 1 22 %.
 
 Source: Mitsuba 3, ``roughplastic``; Walter et al. 2007, Microfacet Models for Refraction through
-Rough Surfaces, for what facets reflect and let through.
+Rough Surfaces, for the reflectance and transmittance of facets.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Loss:
 def counted_inside(ior: float, alpha: float, distribution: Distribution) -> float:
     """Reflectance R of the coat from inside, as Mitsuba adds it up.
 
-    It takes the mean over 64 cosines from 0 to 1, of which the ends should count as halves.
+    Mitsuba takes the mean over 64 cosines from 0 to 1, without half weights at both ends.
     """
     exact = reflectance(1 / ior, alpha, distribution, correlated=False)
     return (63 * exact + head_on(ior)) / 64

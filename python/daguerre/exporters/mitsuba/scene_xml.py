@@ -19,7 +19,7 @@ Element = ElementTree.Element
 
 
 def add(parent: Element, tag: str, **attributes: str) -> Element:
-    """Adds an element with attributes, of which those that are empty are left out."""
+    """Adds an element with its attributes, except empty ones."""
     return ElementTree.SubElement(parent, tag, {k: v for k, v in attributes.items() if v})
 
 
@@ -63,7 +63,7 @@ class Values:
         self._folder, self._notes = folder, notes
 
     def color(self, parent: Element, name: str, value: Colored) -> None:
-        """Adds a colour, or a bitmap of one."""
+        """Adds a colour, a spectrum or a bitmap."""
         if isinstance(value, Picture):
             self.bitmap(parent, name, value, raw=False)
         elif isinstance(value, Spectrum):
@@ -82,7 +82,7 @@ class Values:
         add_value(bright, "boolean", "unbounded", True)
 
     def number(self, parent: Element, name: str, value: Number) -> None:
-        """Adds a number, or a bitmap of one."""
+        """Adds a number or a bitmap."""
         if isinstance(value, Picture):
             self.bitmap(parent, name, value, raw=True)
         else:

@@ -27,8 +27,8 @@ class Shapes:
     def add(self, placed: Placed) -> None:
         """Adds a mesh at all of its places.
 
-        Mitsuba has no instances of emitters. Versions differ in the sides of a mesh that its
-        transform mirrors, so that the file of such a mesh is in the world.
+        Mitsuba has no instances of emitters. Its versions disagree on the sides of a mesh with a
+        mirroring transform, so the file of such a mesh is in world space.
         """
         look = self._looks[placed.material]
         self._bsdfs.id_of(placed.material, look)  # stands before its use

@@ -1,1 +1,1 @@
-"""Scenes on their way to other renderers: what every writer of them shares."""
+"""Scenes for other renderers: the steps that all writers share."""

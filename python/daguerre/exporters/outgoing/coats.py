@@ -35,8 +35,8 @@ def mean_outside(ior: float) -> float:
 def base_below(color: Colored, ior: float) -> Colored:
     """Colour of a base that, with all light between it and a coat, looks like ``color``.
 
-    A base of colour r below a coat sends r / (1 - r F) of what enters, F the mean reflectance from
-    inside; ours sends c / (1 - F). So r = c / (1 - F + c F).
+    A base of colour r below a coat reflects r / (1 - r F) of the light that enters, F the mean
+    reflectance from inside; ours reflects c / (1 - F). So r = c / (1 - F + c F).
     """
     inside = mean_inside(ior)
     return changed(color, lambda shade: shade / (1 - inside + shade * inside))

@@ -1,8 +1,8 @@
 """Folder of the files that a written scene refers to.
 
-Files are named by a hash of their content, and the scene file is written after all of them. So
-a scene file that was there before stays whole at any moment, with its own files; only when the new
-one stands do files go that it has no use for.
+Files are named by a hash of their content, and the scene file is written after all of them. So an
+earlier scene file stays whole at any moment, with its files. Files that the new scene file does not
+use are removed after it is written.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class OutgoingFolder:
         self._made = False
 
     def add(self, kind: str, suffix: str, data: bytes) -> str:
-        """Writes bytes, once for equal ones; returns the path relative to the scene file."""
+        """Writes bytes, equal bytes once; returns the path relative to the scene file."""
 
         def write(path: Path) -> None:
             path.write_bytes(data)
@@ -76,7 +76,7 @@ class OutgoingFolder:
         return f"{self.path.name}/{name}"
 
     def finish(self, text: str) -> None:
-        """Writes the scene file, then removes files of earlier ones that it does not use."""
+        """Writes the scene file, then removes files of earlier scenes that it does not use."""
         write_bytes(self._scene, text.encode())
         if not self.path.is_dir():
             return

@@ -1,7 +1,7 @@
 """glTF materials as the surfaces that other renderers have.
 
-The dielectric of glTF is a diffuse base below an interface whose light does not saturate; its metal
-has Schlick's Fresnel term. Source: glTF 2.0, Appendix B, and the extensions' texts.
+The dielectric of glTF is a diffuse base below an interface, without saturation by light between
+them; its metal has Schlick's Fresnel term. Source: glTF 2.0, Appendix B, and the extensions' texts.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _LEFT_OUT = {
 
 @dataclass(frozen=True)
 class _Interface:
-    """Index of refraction, and the factor on what it reflects."""
+    """Index of refraction, and the factor on the reflected light."""
 
     ior: float
     tint: Colored

@@ -1,4 +1,4 @@
-"""Light of lamps by direction, for renderers whose own falloff is another."""
+"""Light of lamps by direction, for renderers with other falloffs."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def reach_of(profile: LightProfile) -> float:
 
 
 def plain(light: Light, notes: Notes) -> Light:
-    """Returns a light without what neither pbrt nor Mitsuba has; balls become sphere lights."""
+    """Returns a light that pbrt and Mitsuba have; point lights with a radius become spheres."""
     if isinstance(light, PointLight | SpotLight) and not math.isinf(light.range):
         notes.add("range of a light is left out: it falls off with distance only")
         light = replace(light, range=math.inf)

@@ -139,7 +139,7 @@ class Looks:
         return Plastic(base.color, kind.ior, rough, tint, kind.nonlinear, kept)
 
     def _with_emission(self, look: Look, material: Material) -> Look:
-        """Adds the emission of a material to that of its kind."""
+        """Adds the emission of a material to the emission of its kind."""
         if max(material.emission) <= 0:
             return look
         more = self._baker.color(material.emission_texture, material.emission)
@@ -153,17 +153,17 @@ class Looks:
         both = material.two_sided_emission or own.both_sides
         return replace(look, emission=Emission(self._sum(own.color, more), both))
 
-    def _sum(self, one: Colored, more: Colored) -> Colored:
-        if isinstance(one, Picture) and isinstance(more, Picture):
+    def _sum(self, light: Colored, more: Colored) -> Colored:
+        if isinstance(light, Picture) and isinstance(more, Picture):
             self._notes.add("second texture of emission is written as its mean")
             more = more.mean
         if isinstance(more, Picture):
-            one, more = more, one
+            light, more = more, light
         assert not isinstance(more, Picture)
         rgb = rgb_of(more) if isinstance(more, Spectrum) else more
-        if isinstance(one, Picture):
-            return one.mapped(lambda light: light + rgb)
-        own = rgb_of(one) if isinstance(one, Spectrum) else one
+        if isinstance(light, Picture):
+            return light.mapped(lambda value: value + rgb)
+        own = rgb_of(light) if isinstance(light, Spectrum) else light
         return own[0] + rgb[0], own[1] + rgb[1], own[2] + rgb[2]
 
 
@@ -171,9 +171,9 @@ def _slots(owner: object) -> list[TextureSlot]:
     return [slot for slot in vars(owner).values() if isinstance(slot, TextureSlot)]
 
 
-def _product(one: Number, other: Number) -> Number:
-    """Product of numbers; of two pictures the first one is kept."""
-    if isinstance(other, Picture) and not isinstance(one, Picture):
-        one, other = other, one
-    factor = float(other.linear.mean()) if isinstance(other, Picture) else other
-    return one if factor == 1 else each(one, lambda value: value * factor)
+def _product(a: Number, b: Number) -> Number:
+    """Product of numbers; of two pictures, the first times the mean of the second."""
+    if isinstance(b, Picture) and not isinstance(a, Picture):
+        a, b = b, a
+    factor = float(b.linear.mean()) if isinstance(b, Picture) else b
+    return a if factor == 1 else each(a, lambda value: value * factor)

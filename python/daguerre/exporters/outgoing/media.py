@@ -28,7 +28,7 @@ class PlainMedium:
 
 
 def plain_medium(medium: Medium | None, notes: Notes) -> PlainMedium | None:
-    """Takes a medium apart, and notes what no written one has; None: light passes freely."""
+    """Simplifies a medium, and notes parts that no other renderer reads; None: a vacuum."""
     if medium is None:
         return None
     if medium.density is not None:

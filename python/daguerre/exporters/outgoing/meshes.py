@@ -1,4 +1,4 @@
-"""Meshes of a scene as PLY files, one for each way in which they are used."""
+"""Meshes of a scene as PLY files: one file for each use of a mesh."""
 
 from __future__ import annotations
 

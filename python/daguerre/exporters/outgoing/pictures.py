@@ -66,7 +66,7 @@ class Picture:
         return red, green, blue
 
     def without_mirrors(self, axes: tuple[bool, bool] = (True, True)) -> Picture:
-        """Returns a picture that repeats where this one is mirrored: it holds the mirror image."""
+        """Returns a picture that repeats instead of mirroring: the mirror image is part of it."""
         pixels, wrap, rows = (
             self.pixels,
             list(self.wrap),
@@ -162,11 +162,11 @@ def _channels(texture: Texture, wanted: tuple[int, ...]) -> NDArray[Any]:
     """Channels of a texture; grey serves as R, G and B, and a missing alpha is 1."""
     pixels = texture.pixels
     count = pixels.shape[2]
-    one = np.ones_like(pixels[:, :, :1]) * (255 if pixels.dtype == np.uint8 else 1)
+    opaque = np.ones_like(pixels[:, :, :1]) * (255 if pixels.dtype == np.uint8 else 1)
     planes = []
     for channel in wanted:
         if channel == 3:
-            planes.append(pixels[:, :, count - 1 : count] if count in (2, 4) else one)
+            planes.append(pixels[:, :, count - 1 : count] if count in (2, 4) else opaque)
         else:
             at = channel if count >= 3 else 0
             planes.append(pixels[:, :, at : at + 1])

@@ -21,10 +21,10 @@ def ply_bytes(mesh: Mesh, uv: Array | None, place: Place | None = None) -> bytes
     """Makes the bytes of a file of a mesh.
 
     Args:
-        mesh: Mesh, whose positions, normals and triangles are written.
+        mesh: Mesh with the positions, normals and triangles to write.
         uv: Texture coordinates, shape (N, 2), or None.
-        place: World from mesh, shape (4, 4); the file is in the world then, and its triangles
-            have the sides that they have here. None: in the mesh's own space.
+        place: World from mesh, shape (4, 4): the file is in world space, and its triangles
+            keep their sides. None: in mesh space.
     """
     positions, normals, triangles = mesh.positions, mesh.normals, mesh.indices.reshape(-1, 3)
     if place is not None:
@@ -55,7 +55,7 @@ def ply_bytes(mesh: Mesh, uv: Array | None, place: Place | None = None) -> bytes
 def _placed(
     positions: Array, normals: Array | None, triangles: Triangles, place: Place
 ) -> tuple[Array, Array | None, Triangles]:
-    """Moves a mesh to its place; a mirror image has its corners the other way round."""
+    """Moves a mesh to its place; a mirror image has its corners in reverse order."""
     linear = place[:3, :3]
     moved = (positions @ linear.T + place[:3, 3]).astype(np.float32)
     if normals is not None:

@@ -29,7 +29,7 @@ def rgb_of(spectrum: Spectrum) -> Color:
 
 
 def steps_of(color: Color) -> Spectrum:
-    """Spectrum of steps, for what files hold by wavelength alone."""
+    """Spectrum of steps, for parameters that a file holds by wavelength alone."""
     red, green, blue = color
     edge = 1e-3
     nm = (_BLUE_NM, _BLUE_NM + edge, _RED_NM, _RED_NM + edge)

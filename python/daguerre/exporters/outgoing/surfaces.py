@@ -1,4 +1,4 @@
-"""Surfaces in terms that pbrt and Mitsuba share: the small set from which both are written.
+"""Surfaces in terms that pbrt and Mitsuba share, from which both are written.
 
 A value may be a constant or a picture, and a constant colour a spectrum. Roughness is alpha.
 Writers say in a note what their renderer lacks.
@@ -28,7 +28,7 @@ class Rough:
 
     @property
     def smooth(self) -> bool:
-        """Whether it is that of a polished surface."""
+        """Whether the surface is polished."""
         return _is_smooth(self.u) and (self.v is None or _is_smooth(self.v))
 
 
@@ -48,9 +48,9 @@ class Metal:
     """Microfacets of a metal.
 
     Attributes:
-        color: Share that facets reflect, or a factor on what ``eta`` and ``k`` say.
+        color: Reflectance of the facets, or a factor on the reflectance from ``eta`` and ``k``.
         rough: Roughness.
-        schlick: Whether ``color`` is that of normal incidence, and grazing light is all reflected.
+        schlick: Whether ``color`` holds at normal incidence, and rises to 1 at grazing incidence.
         eta: Real part of the index of refraction; None: ``color`` alone.
         k: Imaginary part.
     """
@@ -69,10 +69,10 @@ class Glass:
     Attributes:
         ior: Index of refraction.
         rough: Roughness.
-        tint: Factor on what is transmitted.
-        reflection: Factor on what is reflected.
-        pane: ``""``: it bounds glass; ``"double"``: a sheet with all reflections inside of it;
-            ``"single"``: a sheet that reflects as one interface does.
+        tint: Factor on transmitted light.
+        reflection: Factor on reflected light.
+        pane: ``""``: the surface bounds glass; ``"double"``: a sheet with all reflections inside of
+            it; ``"single"``: a sheet that reflects like a single interface.
     """
 
     ior: float | Spectrum = 1.5
@@ -89,10 +89,10 @@ class Plastic:
     Attributes:
         color: Colour of the base.
         ior: Index of the coat.
-        rough: Its roughness.
-        tint: Factor on what it reflects.
+        rough: Roughness of the coat.
+        tint: Factor on light that the coat reflects.
         saturates: Whether light between base and coat takes on the colour each time; otherwise
-            ``color`` is the one that is seen, without what the coat reflects.
+            ``color`` is the visible colour, without the coat's reflection.
         compensated: Whether light that facets of the coat block goes in; otherwise it is lost.
     """
 
@@ -148,15 +148,15 @@ class Emission:
 
 @dataclass(frozen=True)
 class Look:
-    """All of a material.
+    """All parts of a material.
 
     Attributes:
         surface: Reflection and transmission.
-        opacity: Share that is there; 1: opaque.
+        opacity: Covered share; 1: opaque.
         normals: Normal map.
         emission: Emitted light.
         inside: Medium inside a closed mesh.
-        outside: Medium outside of it; None: that of the world.
+        outside: Medium outside of it; None: the world's.
         two_sided: Whether the surface is seen from behind.
         uv_set: Set of texture coordinates that its pictures use.
         vertex_colors: Whether vertex colours multiply the colour of the surface.

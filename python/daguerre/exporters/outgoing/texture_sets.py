@@ -9,7 +9,7 @@ from daguerre.scene.materials import TextureSlot
 
 
 def uv_set_of(slots: Sequence[TextureSlot], notes: Notes) -> int:
-    """Set that a material's mesh is written with: that of the first texture; notes the others."""
+    """Set of texture coordinates to write: the first texture's; notes textures with others."""
     if not slots:
         return 0
     others = sum(slot.uv_set != slots[0].uv_set for slot in slots)

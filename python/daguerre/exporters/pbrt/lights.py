@@ -31,9 +31,9 @@ def add_lights(
 ) -> None:
     """Adds all lamps."""
     for light, transform in lights:
-        one = plain(light, notes)
+        lamp = plain(light, notes)
         with text.block("Attribute"):
-            _add_light(text, one, transform, folder, notes)
+            _add_light(text, lamp, transform, folder, notes)
 
 
 def _add_light(
@@ -87,7 +87,7 @@ def add_environment(
         text.directive("LightSource", "infinite", string("filename", path), floats("scale", scale))
 
 
-#: World from the octahedron, whose axis is +z: that becomes +y.
+#: World from the octahedron: its axis +z becomes +y.
 UPRIGHT = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], np.float64)
 
 

@@ -105,7 +105,7 @@ class Materials:
         return "diffusetransmission", [reflected, self.color("transmittance", surface.through)]
 
     def _metal(self, surface: Metal, prefix: str) -> list[Parameter]:
-        """Parameters of a metal; ``prefix``: that of their names below a coat."""
+        """Parameters of a metal; ``prefix`` of their names below a coat."""
         if surface.eta is not None and surface.k is not None:
             if surface.color != WHITE:
                 self.notes.add("factor on the reflectance of a metal is left out")

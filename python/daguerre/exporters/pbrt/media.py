@@ -1,4 +1,4 @@
-"""Media of pbrt: even ones, with one Henyey-Greenstein lobe."""
+"""Media of pbrt: homogeneous, with one Henyey-Greenstein lobe."""
 
 from __future__ import annotations
 

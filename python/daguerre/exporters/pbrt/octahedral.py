@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 #: Largest number of rows of a resampled map.
 _MOST_ROWS = 4096
-#: Points along each side of a pixel whose mean it has.
+#: Samples along each side of a pixel, which gets their mean.
 _WITHIN = 2
 
 

@@ -86,7 +86,7 @@ def texture(name: str, value: str) -> Parameter:
 
 
 def numbers(values: Sequence[float]) -> str:
-    """Joins numbers, each with all of its digits; whole ones without a point."""
+    """Joins numbers, each with all of its digits; integers without a point."""
     return " ".join(
         str(int(v)) if v == int(v) and abs(v) < 1e15 else repr(float(v)) for v in values
     )

@@ -1,4 +1,4 @@
-"""Writes cameras as UsdGeomCamera, with NVIDIA's attributes and ours for what that has no name for.
+"""Writes cameras as UsdGeomCamera, NVIDIA's attributes, and ours for the rest.
 
 The stage has metres and +y up, so camera lengths, which are tenths of a unit, are in units of
 100 mm. Values over time become time samples.
@@ -41,10 +41,10 @@ def write_cameras(
     Args:
         path: File, .usda, .usdc or .usd.
         cameras: Cameras by name.
-        times: Begin and end of values over time, s; None: those of their keys.
+        times: Begin and end of animated values, s; None: the first and last key.
 
     Raises:
-        UsageError: A camera has something that no stage can hold.
+        UsageError: A camera has a part that no stage can hold.
         OutputError: The file cannot be written.
     """
     stage = Usd.Stage.CreateInMemory()

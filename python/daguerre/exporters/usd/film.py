@@ -40,7 +40,7 @@ def write_film(output: Output) -> None:
 
 
 def _height(camera: Camera) -> float:
-    """Height of the film, mm; with a calibration that of its picture."""
+    """Height of the film, mm; with a calibration, from the aspect of its picture."""
     if camera.projection is None:
         return float(camera.sensor_size[1])
     width, height = camera.projection.size
@@ -48,7 +48,7 @@ def _height(camera: Camera) -> float:
 
 
 def _offset(axis: int, camera: Camera) -> float:
-    """Offset of the film, right or up; with a calibration that of its principal point."""
+    """Offset of the film, right or up; with a calibration, of its principal point."""
     if camera.projection is None:
         return float(camera.shift[axis] / _TENTH)
     return float(-camera.projection.film(camera.sensor_size[0])["principal_mm"][axis] / _TENTH)

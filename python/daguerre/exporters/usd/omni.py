@@ -16,7 +16,7 @@ _PINHOLE, _FISHEYE, _FTHETA = "opencvPinhole", "opencvFisheye", "ftheta"
 
 
 def write_projection(output: Output) -> None:
-    """Writes the projection of a camera that has one."""
+    """Writes the projection of a camera with a calibration."""
     made = output.camera.projection
     assert made is not None
     model = _of(made)

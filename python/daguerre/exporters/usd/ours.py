@@ -1,4 +1,4 @@
-"""Writes what UsdGeomCamera has no name for as ``daguerre:*``."""
+"""Writes settings that UsdGeomCamera lacks as ``daguerre:*``."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def _found(value: Lens | sensors.Sensor, name: str, load: Callable[[str], Any]) 
         near = [entry.name for entry in lenses.entries() if entry.title == value.name]
     else:
         near = sensors.names()
-    found = next((one for one in near if load(one) == value), None)
+    found = next((name for name in near if load(name) == value), None)
     if found is None:
         raise UsageError(
             f"camera: {name}: wanted a name of the library or a file, got {short(value.name)} in "

@@ -50,12 +50,12 @@ def _responsivity(camera: Camera) -> float:
 
 
 def write_shutter(output: Output) -> None:
-    """Writes the shutter's times, its curve, and how it scans."""
+    """Writes the shutter's times, its curve, and its scan."""
     camera = output.camera
     rate = output.rate
     moving = ("shutter_time", "shutter_angle", "shutter_offset")
-    output.follow("shutter:open", "double", lambda one: _ends(one)[0] * rate, *moving)
-    output.follow("shutter:close", "double", lambda one: _ends(one)[1] * rate, *moving)
+    output.follow("shutter:open", "double", lambda camera: _ends(camera)[0] * rate, *moving)
+    output.follow("shutter:close", "double", lambda camera: _ends(camera)[1] * rate, *moving)
     if camera.shutter_offset is None:
         output.set(PREFIX + CENTERED, "bool", True)
     _write_curve(output)

@@ -1,4 +1,4 @@
-"""Sets attributes of a prim from a camera, with time samples for what changes."""
+"""Sets attributes of a prim from a camera, with time samples for animated values."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ class Output:
         prim: The prim.
         camera: The camera.
         rate: Time codes per second.
-        folder: Folder of the stage, whose files it may refer to.
-        times: Begin and end of values over time, s; None: those of their keys.
-        codes: Time codes that have samples.
+        folder: Folder of the stage; its files can be referred to.
+        times: Begin and end of animated values, s; None: the first and last key.
+        codes: Time codes with samples.
     """
 
     prim: Usd.Prim
@@ -44,7 +44,7 @@ class Output:
     codes: set[float] = field(default_factory=set)
 
     def code(self, time: float | None) -> Usd.TimeCode:
-        """Time code of a time, s; None: that of a constant."""
+        """Time code of a time, s; None: the default time code, for constants."""
         if time is None:
             return Usd.TimeCode.Default()
         self.codes.add(time * self.rate)

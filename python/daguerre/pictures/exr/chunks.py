@@ -27,7 +27,7 @@ class Chunks:
         """Finds and checks all chunks.
 
         Raises:
-            InputError: A chunk is outside of the file, is another one, or cannot hold its pixels.
+            InputError: A chunk is outside of the file, has a wrong place, or is too small.
         """
         self.layout, self._stream, self._lock = layout, stream, Lock()
         self._size = stream.seek(0, 2)
@@ -64,9 +64,9 @@ class Chunks:
         if not layout.data <= place <= self._size - head:
             wish = f"a place within bytes {layout.data} .. {self._size}"
             raise self._error(where, wish, f"{place}{CUT}")
-        *told, length = struct.unpack(f"<{len(wanted) + 1}i", self._read(place, head))
-        if told != wanted:
-            raise self._error(where, f"a block of {wanted}", f"one of {told}")
+        *stored, length = struct.unpack(f"<{len(wanted) + 1}i", self._read(place, head))
+        if stored != wanted:
+            raise self._error(where, f"a block of {wanted}", f"one of {stored}")
         full, growth = self.unpacked(row, column), _GROWTH.get(layout.compression)
         least = 1 if growth is None else -(-full // growth) - 64
         most = full if growth is not None else self._size

@@ -1,7 +1,7 @@
-"""Colour spaces of frames in OpenEXR files: what is converted, and the attributes that say so.
+"""Colour spaces of frames in OpenEXR files: converted channels, and attributes of the space.
 
 Light is converted: R, G, B and the layers ``flare``, ``catcher`` and ``albedo``. ``catcher_ratio``
-is converted as light upon white would be, which is exact for grey plates. All other channels are no
+is converted like light on white, which is exact for grey plates. All other channels are no
 colours of primaries, ``variance`` among them, and keep their numbers.
 
 With ACES primaries, a file of nothing but R, G, B and A is an ACES image container (SMPTE
@@ -74,8 +74,8 @@ def in_space(planes: dict[str, Any], name: str) -> dict[str, Any]:
         if layer in planes:
             made[layer] = convert.written(layer, planes[layer])
         elif names := _split(layer, planes):
-            light = convert.written(layer, np.stack([planes[one] for one in names], axis=2))
-            made |= {one: light[:, :, i] for i, one in enumerate(names)}
+            light = convert.written(layer, np.stack([planes[name] for name in names], axis=2))
+            made |= {name: light[:, :, i] for i, name in enumerate(names)}
     return made
 
 
@@ -88,8 +88,8 @@ def in_rec709(planes: dict[str, Any], convert: Any) -> None:
     """
     for layer in (*LIGHT, RATIO):
         if names := _split(layer, planes):
-            light = convert(layer, np.stack([planes[one] for one in names], axis=2))
-            planes.update({one: light[:, :, i] for i, one in enumerate(names)})
+            light = convert(layer, np.stack([planes[name] for name in names], axis=2))
+            planes.update({name: light[:, :, i] for i, name in enumerate(names)})
 
 
 def _split(layer: str, planes: Mapping[str, Any]) -> list[str]:

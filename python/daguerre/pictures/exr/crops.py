@@ -22,8 +22,8 @@ from .rows import ExrWriter
 
 BAND = 64  # rows at a time
 Box = tuple[int, int, int, int]  # first column and row, and last column and row plus 1
-#: Attributes that may differ between crops: counts are added, those of adaptive sampling and light
-#: paths stay if all agree, others are left out.
+#: Attributes that may differ between crops: counts are added, adaptive sampling and light
+#: paths stay if all crops agree, others are left out.
 COUNTS = ("daguerre:bad_samples", "daguerre:motion_missing")
 IF_ALIKE = ("daguerre:light_paths", "daguerre:noise", "daguerre:denoised_noise")
 ADAPTIVE = ("daguerre:samples", "daguerre:samples_min", "daguerre:samples_max")
@@ -82,7 +82,7 @@ def _check_alike(first: ExrReader, other: ExrReader) -> None:
 
 def _difference(name: str, first: ExrReader, other: ExrReader) -> str:
     """Name of an attribute, with both values if they are short."""
-    values = [str(one.facts.get(name, "none")) for one in (other, first)]
+    values = [str(crop.facts.get(name, "none")) for crop in (other, first)]
     short = all(len(value) <= 40 for value in values) and values[0] != values[1]
     return f"{clean(name)} ({values[0]}, wanted {values[1]})" if short else clean(name)
 

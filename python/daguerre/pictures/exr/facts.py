@@ -55,10 +55,10 @@ def _own(name: str, value: object) -> Any:
     if name not in _JSON:
         return value
     try:
-        told = json.loads(value) if isinstance(value, str) else None
+        parsed = json.loads(value) if isinstance(value, str) else None
     except (ValueError, RecursionError):
         return None
-    return told if _JSON[name](told) else None
+    return parsed if _JSON[name](parsed) else None
 
 
 def _whole(text: str) -> int | None:

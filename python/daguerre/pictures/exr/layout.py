@@ -232,11 +232,11 @@ def _chunk_count(path: Path, header: ExrHeader) -> int:
     The count of deep parts, which are not read, is not checked, but the places after them are.
     """
     kind, data = header.attributes.get("chunkCount", ("", b""))
-    told: int | None = struct.unpack("<i", data)[0] if kind == "int" and len(data) == 4 else None
+    stated: int | None = struct.unpack("<i", data)[0] if kind == "int" and len(data) == 4 else None
     if _is_deep(header):
-        if told is None or told < 1:
+        if stated is None or stated < 1:
             raise InputError(f"{path}: format: deep pixels are not supported")
-        return told
+        return stated
     x0, y0, x1, y1 = _box(path, header)
     width, height = x1 - x0 + 1, y1 - y0 + 1
     if _tile(path, header) is None:
@@ -244,8 +244,8 @@ def _chunk_count(path: Path, header: ExrHeader) -> int:
         count = -(-height // rows)
     else:
         count = _tile_count((width, height), *_tiles(path, header))
-    if header.flags & MULTIPART and told != count:
-        raise InputError(f"{path}: chunkCount: wanted {count}, got {told}")
+    if header.flags & MULTIPART and stated != count:
+        raise InputError(f"{path}: chunkCount: wanted {count}, got {stated}")
     return count
 
 
@@ -263,7 +263,7 @@ def _tile_count(size: tuple[int, int], width: int, height: int, mode: int) -> in
 
 
 def _level_sizes(size: int, up: int) -> list[int]:
-    """Sizes of the levels along one side; each is half of the one before, rounded down or up."""
+    """Sizes of the levels along one side; each is half of the previous, rounded down or up."""
     found, level = [size], 0
     while found[-1] > 1:
         level += 1

@@ -152,7 +152,7 @@ class PartReader:
     def _put(
         self, planes: Planes, rows: tuple[int, int], row: int, column: int, block: NDArray[np.uint8]
     ) -> None:
-        """Copies a chunk's pixels into planes; each row has its channels one after another."""
+        """Copies a chunk's pixels into planes; each row stores channel after channel."""
         x0, x1, y0, y1 = self._chunks.box(row, column)
         top, bottom = max(y0, rows[0]), min(y1, rows[1])
         lines = block.reshape(y1 - y0, -1)[top - y0 : bottom - y0]

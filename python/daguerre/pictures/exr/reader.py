@@ -67,7 +67,7 @@ def is_exr(path: str | os.PathLike[str]) -> bool:
 
 
 def refuse_chroma(names: Sequence[str], where: str) -> None:
-    """Refuses luminance with chroma, whose grey would lose the colours.
+    """Refuses luminance with chroma: luminance alone would lose the colours.
 
     Raises:
         InputError: Channels are Y, RY and BY.
@@ -79,7 +79,7 @@ def refuse_chroma(names: Sequence[str], where: str) -> None:
 
 
 def light_names(names: Sequence[str], where: str) -> list[str]:
-    """Finds the channels of red, green and blue, or X, Y and Z, or a grey one, three times.
+    """Finds the channels of red, green and blue, or X, Y and Z, or a grey channel three times.
 
     Channels without a layer come first; else all three come from one layer. X, Y and Z without a
     layer are colours (CIE XYZ); in a layer they are places or directions.
@@ -89,7 +89,7 @@ def light_names(names: Sequence[str], where: str) -> list[str]:
         where: The file, for messages.
 
     Raises:
-        InputError: There are no such channels.
+        InputError: The file has none of these.
     """
     layers = sorted(
         {name.rpartition(".")[0] for name in names}, key=lambda name: (name != "", name)

@@ -35,7 +35,7 @@ class ExrWriter:
 
         Args:
             path: File; use :func:`daguerre.files.atomic.atomic_path` for an atomic write.
-            source: Header whose attributes are kept, except those of the packing of pixels.
+            source: Header with attributes to keep; attributes of pixel packing are replaced.
             attributes: Text attributes to add.
         """
         packed = source.facts.get("compression", NONE)
@@ -101,7 +101,7 @@ class ExrWriter:
         return -(-rows // self._block)
 
     def _packed(self, planes: Planes) -> bytes:
-        """Packs a block of rows; each row has its channels one after another."""
+        """Packs a block of rows; each row stores channel after channel."""
         count = len(next(iter(planes.values())))
         lines = [
             np.ascontiguousarray(planes[c.name], np.dtype(c.dtype).newbyteorder("<"))

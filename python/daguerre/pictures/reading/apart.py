@@ -46,13 +46,13 @@ def read(
         target = Path(folder, "plain.tif")
         seconds = PATIENCE + source.size / PACE
         wanted = decoder.Wanted("tiff", target, limit, seconds, straight)
-        told = decoder.run(name, wanted, where, kind.title)
+        output = decoder.run(name, wanted, where, kind.title)
         plain = Source(target)
         pixels = tiff.plain_pixels(plain, where, limit)
     height, width, channels = pixels.shape
     check_size(width, height, channels, pixels.dtype.itemsize, where, limit)
     try:
-        facts = json.loads(told)
+        facts = json.loads(output)
         names, turn = [str(name) for name in facts["names"]], int(facts["orientation"])
     except (ValueError, KeyError, TypeError, RecursionError):
         names, turn = [], 1

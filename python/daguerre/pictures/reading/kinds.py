@@ -1,7 +1,7 @@
-"""Kinds of pictures, told apart by their first bytes.
+"""Kinds of pictures, recognized by their first bytes.
 
-Suffixes do not count, as a file from a stranger may have any. Two kinds have no mark at their
-start: TGA, and RLA, which therefore need their suffix.
+A file from a stranger may have any suffix, so suffixes do not count. Two kinds have no mark at
+their start, TGA and RLA, and therefore need their suffix.
 Sources: the specifications of the formats; for RLA and Maya's IFF, OpenImageIO's readers.
 """
 
@@ -15,7 +15,7 @@ from daguerre.files.json_item import short
 
 from .source import Source
 
-#: Bytes from which a kind can be told.
+#: Length of the file's start that identifies a kind, bytes.
 _START = 32
 
 

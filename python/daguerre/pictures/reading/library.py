@@ -20,10 +20,10 @@ _ALL_READERS = "try_all_readers"
 
 
 class _OnePlugin:
-    """While at least one thread is within it, OpenImageIO tries no plug-in but that of the suffix.
+    """Context, for any thread, in which OpenImageIO tries the plug-in of the suffix alone.
 
-    Otherwise it offers a file that its plug-in refuses to all others, whatever its bytes. The
-    setting belongs to the process, so it is restored afterwards.
+    Otherwise OpenImageIO offers a file that this plug-in refuses to all other plug-ins. The setting
+    belongs to the process, so it is restored afterwards.
     """
 
     def __init__(self) -> None:

@@ -14,7 +14,7 @@ from .kinds import kind_of
 from .size import MAX_BYTES
 from .source import Source
 
-#: Checks before a kind is decoded in this process; one may send its file to the process apart.
+#: Checks before a kind is decoded in this process; a check returns False to decode apart instead.
 _CHECKS: dict[str, Callable[[Source, str, int], bool | None]] = {
     "png": png.check,
     "jpeg": jpeg.check,

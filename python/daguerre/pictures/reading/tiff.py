@@ -1,4 +1,4 @@
-"""Reads the tags of TIFF files: whether one is plain, and the pixels of the plainest.
+"""Reads the tags of TIFF files: whether a file is plain, and the pixels of the plainest files.
 
 libtiff decodes dozens of compressions and kinds of pixels. Grey, RGB and palettes of whole bytes,
 not packed or by LZW, deflate or PackBits, are plain; all others are decoded apart.

@@ -1,7 +1,7 @@
 """Reads MaterialX documents: a material by its name, as one flat graph.
 
-Node graphs, their interfaces, and definitions that a document makes of its own nodes are resolved;
-what remains are nodes of the standard libraries.
+Node graphs, their interfaces, and definitions of nodes within the document are resolved; nodes of
+the standard libraries remain.
 
 Source: MaterialX specification 1.39 (https://materialx.org/Specification.html), chapters
 "Nodes", "Node Graph Elements" and "Custom Nodes".
@@ -25,7 +25,7 @@ from .values import fail, value_of
 _MAX_NESTING = 32
 _MAX_BYTES = 1 << 28
 _MAX_HOPS = 1000
-#: Types whose values have a colour space.
+#: Types of values that have a colour space.
 _COLORED = ("color3", "color4", "filename")
 
 
@@ -92,7 +92,7 @@ class Document:
     def materials(self) -> list[str]:
         """Names of the materials, in the order of the document."""
         found = self._root.element.children
-        return [one.get("name") for one in found if one.tag == "surfacematerial"]
+        return [element.get("name") for element in found if element.tag == "surfacematerial"]
 
     def graph(self, material: str) -> Graph | None:
         """Graph of a material; None: there is no material of this name.
@@ -117,7 +117,7 @@ class Document:
         return self._names[key]
 
     def _definition(self, node: Element) -> tuple[Element, Element] | None:
-        """Definition and graph in this document that make a node; None: a standard one."""
+        """Definition and graph in this document that make a node; None: a standard node."""
         for name, body in self._bodies.items():
             definition = self._definitions[name]
             fits = definition.get("node") == node.tag and not node.get("nodedef")

@@ -38,7 +38,7 @@ class Element:
         return self.attributes.get(name, "")
 
     def inherited(self, name: str) -> str:
-        """Value of an attribute of the element or of the nearest around it that has one."""
+        """Value of an attribute of the element, or of the nearest parent that has it."""
         element: Element | None = self
         while element is not None:
             if name in element.attributes:

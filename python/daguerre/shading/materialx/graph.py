@@ -31,7 +31,7 @@ class Constant:
     Attributes:
         value: Numbers, a text, or keys of numbers over time.
         space: Name of the colour space of a colour or of a file's colours; empty: none is given.
-        base: Folder or layer to which a file name is relative; empty: that of the document.
+        base: Folder or layer to which a file name is relative; empty: the document's folder.
     """
 
     value: tuple[float, ...] | str | Keys
@@ -45,7 +45,7 @@ class Node:
 
     Attributes:
         kind: Name of the node's definition without its types, such as "image".
-        type: Type of the only output, such as "color3"; empty: that of the definition.
+        type: Type of the only output, such as "color3"; empty: as in the definition.
         inputs: Constants and links by name; inputs that have no value are absent.
         place: File and element, for messages.
     """
