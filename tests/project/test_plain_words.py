@@ -14,7 +14,6 @@ PATTERNS, comments, files, rates = (WORDS[k] for k in ("PATTERNS", "comments", "
 
 #: Rooms with comments that are still to be rewritten.
 LEFT = {
-    "python/daguerre/importers",
 }
 ROOMS = sorted(
     room.relative_to(ROOT).as_posix()

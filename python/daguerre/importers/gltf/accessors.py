@@ -25,7 +25,7 @@ _MAX_UNPACKED_BYTES = 8 << 30
 
 
 class _View:
-    """A bufferView; a compressed one is unpacked at the first read.
+    """A bufferView; compressed views are unpacked at the first read.
 
     Args:
         item: The bufferView.
@@ -172,7 +172,7 @@ class Accessors:
         """Sets the array of an accessor, (count, components), unpacked from ``source``.
 
         Raises:
-            InputError: It does not fit the accessor, or another source supplied one.
+            InputError: The array does not fit the accessor, or another source supplied an array.
         """
         index = self.index(use)
         if self._sources.setdefault(index, source) != source:

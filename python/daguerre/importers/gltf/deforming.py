@@ -59,7 +59,7 @@ class MeshOverTime(Value):
 
 
 def finished(arrays: Arrays, base: Arrays, triangles: NDArray[np.uint32], notes: Notes) -> Vertices:
-    """Normalises normals and tangents; arrays that are still those of ``base`` are copied."""
+    """Normalises normals and tangents; arrays shared with ``base`` are copied."""
 
     def own(name: str) -> FloatArray | None:
         array = arrays.get(name)

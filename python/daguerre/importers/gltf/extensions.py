@@ -1,4 +1,4 @@
-"""Lists the supported extensions of glTF, and checks those of a file."""
+"""Lists the supported extensions of glTF, and checks the extensions of a file."""
 
 from __future__ import annotations
 

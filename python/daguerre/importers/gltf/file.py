@@ -154,7 +154,7 @@ def load_buffers(document: Document) -> list[memoryview]:
 def _load_buffer(document: Document, item: Item, budget: Budget) -> memoryview:
     length_item = item.need("byteLength")
     length = length_item.integer(0)
-    if length == 0:  # some exporters write one that nothing reads
+    if length == 0:  # some exporters write an empty buffer that nothing reads
         return memoryview(b"")
     budget.spend(length, length_item)
     uri = item.get("uri")

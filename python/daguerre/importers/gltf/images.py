@@ -61,7 +61,7 @@ class Images:
 
         def load(index: int) -> NDArray[Any]:
             from daguerre.pictures import (
-                images,  # whose readers scenes without pictures do not need
+                images,  # slow to import, and unused by scenes without pictures
             )
 
             pixels = images.decode(self._bytes(index), self._where(index))

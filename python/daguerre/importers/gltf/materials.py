@@ -1,7 +1,7 @@
 """Reads materials of glTF: metallic-roughness and supported KHR extensions.
 
 Source: glTF 2.0 specification, chapters 3.9 and 5.19; KHR_materials_{emissive_strength, ior,
-transmission, volume, specular, dispersion}; those of importers/gltf/layers.py and
+transmission, volume, specular, dispersion}; extensions in importers/gltf/layers.py and
 importers/gltf/material_models.py.
 """
 

@@ -182,7 +182,7 @@ class Meshes:
             self._notes.add("a mesh without JOINTS_0 is not moved by its skin")
             chosen = None
         if chosen is not None and self._is_nothing(chosen):
-            # Scale 0 hides an object, like that of a node (3.5.3).
+            # Scale 0 hides an object, as at a node (3.5.3).
             self._notes.add("a mesh that its skin scales to zero is left out")
             return None
         if gltf_draco.supply(primitive, mode, attributes, self._accessors, self._notes):

@@ -93,8 +93,8 @@ def _round(values: NDArray[np.float32], dtype: type) -> NDArray[Any]:
 def _octahedral(raw: NDArray[np.uint8], stride: int) -> NDArray[Any]:
     dtype = np.int8 if stride == 4 else np.int16
     packed_values = raw.view(dtype).reshape(-1, 4)
-    x, y, one = packed_values[:, :3].astype(np.float32).T
-    x, y = x / one, y / one
+    x, y, scale = packed_values[:, :3].astype(np.float32).T
+    x, y = x / scale, y / scale
     z = 1 - np.abs(x) - np.abs(y)
     fold = np.minimum(z, np.float32(0))
     unit = np.stack([x - np.copysign(fold, x), y - np.copysign(fold, y), z], axis=1)
@@ -106,8 +106,8 @@ def _octahedral(raw: NDArray[np.uint8], stride: int) -> NDArray[Any]:
 
 def _quaternion(raw: NDArray[np.uint8], stride: int) -> NDArray[Any]:
     values = raw.view("<i2").reshape(-1, 4)
-    one = (values[:, 3] | 3).astype(np.float32)
-    three = values[:, :3].astype(np.float32) / (one[:, None] * np.float32(np.sqrt(2)))
+    scale = (values[:, 3] | 3).astype(np.float32)
+    three = values[:, :3].astype(np.float32) / (scale[:, None] * np.float32(np.sqrt(2)))
     largest = np.sqrt(np.maximum(0, 1 - np.square(three).sum(axis=1)))
     turned = _round(np.concatenate([largest[:, None], three], axis=1) * np.float32(32767), np.int16)
     # Element k of `turned` belongs to component (largest + k) % 4.

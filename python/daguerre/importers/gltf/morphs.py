@@ -105,7 +105,7 @@ def displacements(
     """Finds displacements of a primitive; targets of weight 0 are skipped.
 
     Raises:
-        InputError: The number of weights is not that of targets.
+        InputError: The numbers of weights and targets differ.
     """
     targets = primitive.list_of("targets")
     if weights is None or not targets:
@@ -135,7 +135,7 @@ def displacements_again(
 
 
 def morph(arrays: dict[str, FloatArray], parts: tuple[Displacement, ...], shapes: Shapes) -> None:
-    """Replaces arrays of vertices by displaced ones; normals and tangents are not normalised.
+    """Replaces arrays of vertices by displaced arrays; normals and tangents are not normalised.
 
     Args:
         arrays: Attributes of the mesh, by their names in glTF, shape (N, components).

@@ -170,7 +170,7 @@ def is_visible(item: Item) -> bool:
 
 
 def unique_names(tree: Tree, meshes: list[Item], cameras: list[Item]) -> list[str]:
-    """Unique name of each node: its own, else that of its mesh or camera, else from its index."""
+    """Unique name of each node: the node's, else its mesh's or camera's, else from its index."""
     taken: set[str] = set()
     counters: dict[str, int] = {}
     names: list[str] = []

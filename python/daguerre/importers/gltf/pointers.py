@@ -33,7 +33,7 @@ class Target:
         holder: Object or list that contains the value.
         key: Name or index of the value in ``holder``.
         name: Name for notes.
-        width: Numbers in the value; None: that of the accessor's type, or a list of any length.
+        width: Numbers in the value; None: as in the accessor's type, or a list of any length.
         types: Accessor types that fit.
         is_flag: Whether the value is true or false.
     """
@@ -94,8 +94,8 @@ class Pointers:
         if not isinstance(chosen, int) or not 0 <= chosen < len(self._meshes):
             return
         mesh = self._meshes[chosen]
-        weights = _list(mesh, "weights")  # a node inherits those of its mesh (3.7.4)
-        if not weights:  # which default to zeros (3.7.2.2)
+        weights = _list(mesh, "weights")  # a node inherits the weights of its mesh (3.7.4)
+        if not weights:  # weights of a mesh default to 0 (3.7.2.2)
             first = mesh.list_of("primitives")[:1]
             weights = [0.0] * sum(len(_list(primitive, "targets")) for primitive in first)
         self._copied.spend(len(weights), use)

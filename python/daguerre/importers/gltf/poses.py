@@ -154,7 +154,7 @@ class Poses(Value):
         return breaks_of([c for n in self._chain(node) for c in self._shown.get(n, ())], begin, end)
 
     def depth(self, node: int) -> int:
-        """Number of nodes from the root to this one, both included."""
+        """Number of nodes from the root to this node, both included."""
         return len(self._chain(node))
 
     def _chain(self, node: int) -> list[int]:

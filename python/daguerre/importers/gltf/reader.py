@@ -1,7 +1,7 @@
 """Reads glTF 2.0 as a scene: joins container, nodes, meshes, materials and cameras.
 
-Start reading here; other modules of this folder have the single steps. Any fault in a file gives
-one ``InputError`` with file, JSON path, what was wanted and what was got.
+Start reading here; each other module of this folder reads one part of glTF. A fault in a file
+raises an ``InputError`` with the file, the JSON path, the wanted value and the value found.
 """
 
 from __future__ import annotations

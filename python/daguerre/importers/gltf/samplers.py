@@ -145,7 +145,7 @@ class Samplers:
         raw = self._accessors.floats(use, target.types, "key value")
         rows = 3 if mode == "CUBICSPLINE" else 1
         per_key = count * rows
-        # The elements of a list are stored one after another.
+        # The elements of a list are stored in sequence.
         if len(raw) % per_key or (len(raw) != per_key and not target.is_list):
             wanted = f"{'a multiple of ' if target.is_list else ''}{per_key} ({mode})"
             use.fail(f"wrong number of key values: wanted {wanted}, got {len(raw)}")

@@ -12,7 +12,7 @@ _EXTENSION = "KHR_materials_variants"
 
 
 class Variants:
-    """Variants of a file, and the chosen one.
+    """Variants of a file, and the active variant.
 
     Args:
         root: The JSON object of the file.
@@ -22,7 +22,7 @@ class Variants:
         names: Names of all variants, in the order of the file.
 
     Raises:
-        InputError: There is no variant of that name.
+        InputError: The file has no variant of this name.
     """
 
     def __init__(self, root: Item, chosen: str | None) -> None:

@@ -89,7 +89,7 @@ def check_corners(corners: NDArray[Any], vertices: int, where: str) -> NDArray[n
     """Checks indices of vertices, of any type of numbers.
 
     Raises:
-        InputError: One is not 0 .. ``vertices`` - 1; the message names the first such corner.
+        InputError: An index is not 0 .. ``vertices`` - 1; the message names the first such corner.
     """
     with np.errstate(invalid="ignore"):
         if len(corners) == 0 or (corners.min() >= 0 and corners.max() < vertices):
@@ -109,10 +109,10 @@ def check_finite(values: NDArray[Any], where: str, what: str) -> None:
     """Checks that numbers of vertices or corners, shape (N, K), are finite.
 
     Raises:
-        InputError: One is not, or not in single precision; the message names the first.
+        InputError: A number is not finite in single precision; the message names the first.
     """
     with np.errstate(all="ignore"):
-        # A sum is fast, and NaN or infinite if one of its parts is; large ones are looked at.
+        # A sum is fast, and NaN or infinite if any number is; it may also overflow.
         if not len(values) or np.isfinite(values.sum()):
             return
     fits = np.isfinite(values).all(axis=1)

@@ -36,10 +36,10 @@ def read(path: str | os.PathLike[str], notes: Notes) -> FileMesh:
 
     Args:
         path: The file.
-        notes: Remarks on what is not used.
+        notes: Receives notes on unused content.
 
     Raises:
-        InputError: It is not such a file; the message names file and line.
+        InputError: The file is not valid OBJ; the message names file and line.
     """
     file = Path(path)
     data = read_bytes(file, _MOST)
@@ -114,7 +114,7 @@ def _kept(table: Floats, index: NDArray[np.int64], what: str, notes: Notes) -> F
 
 
 def _mesh(faces: Faces, points: Floats, uv: Floats | None, normals: Floats | None) -> FileMesh:
-    """A mesh whose vertices are the different corners."""
+    """Makes a mesh with a vertex for each distinct corner."""
     corners = faces.points
     used = [
         index for table, index in ((uv, faces.uv), (normals, faces.normals)) if table is not None

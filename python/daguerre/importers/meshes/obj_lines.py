@@ -62,7 +62,7 @@ class Lines:
         return out
 
     def others(self) -> list[tuple[str, int]]:
-        """Keywords that are not those of vertices and faces, with their numbers."""
+        """Keywords of lines that hold no vertices or faces, with the number of lines."""
         rest = ~BLANK[self._letters[0]] & (self._letters[0] != _HASH)
         for word in ("v", "vt", "vn", "f"):
             rest[self.of(word)] = False
@@ -116,7 +116,7 @@ def _plain(data: Bytes) -> Bytes:
 
 
 def _blank_comments(text: Bytes) -> None:
-    """Makes blanks of what follows a # in its line."""
+    """Replaces comments, from # to the end of a line, by blanks."""
     begins = np.flatnonzero(text == _HASH)
     ends = np.flatnonzero(text == _END)
     behind = ends[np.searchsorted(ends, begins)]

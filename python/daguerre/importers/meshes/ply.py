@@ -42,10 +42,10 @@ def read(path: str | os.PathLike[str], notes: Notes) -> FileMesh:
 
     Args:
         path: The file.
-        notes: Remarks on what is not used.
+        notes: Receives notes on unused content.
 
     Raises:
-        InputError: It is not such a file; the message names file and line or element.
+        InputError: The file is not valid PLY; the message names file and line or element.
     """
     file = Path(path)
     data = read_bytes(file)
@@ -68,7 +68,7 @@ def _tables(header: Header, data: Bytes, where: str, notes: Notes) -> dict[str, 
     if not order:  # text becomes an array of doubles, whatever the header calls them
         words = _words(data[header.size :], header.lines + 1, where)
         data, order, begin = words.astype("<f8").view(np.uint8), "<", 0
-        elements = tuple(_of_doubles(one) for one in elements)
+        elements = tuple(_of_doubles(element) for element in elements)
     found = {}
     for element in elements:
         rows = Rows(element, data, begin, order, f"{where}: element {element.name}")
@@ -93,7 +93,7 @@ def _words(text: Bytes, line: int, where: str) -> NDArray[np.float64]:
 
 
 def _of_doubles(element: Element) -> Element:
-    columns = (Property(one.name, "f8", one.counted and "f8") for one in element.properties)
+    columns = (Property(p.name, "f8", p.counted and "f8") for p in element.properties)
     return replace(element, properties=tuple(columns))
 
 
@@ -117,7 +117,7 @@ def _vertices(element: Element, rows: Rows, where: str, notes: Notes) -> FileMes
 
 def _has(element: Element, names: tuple[str, ...]) -> bool:
     """Whether an element has numbers of these names."""
-    return all((one := element.find(name)) is not None and not one.counted for name in names)
+    return all((p := element.find(name)) is not None and not p.counted for name in names)
 
 
 def _values(element: Element, rows: Rows, names: tuple[str, ...], where: str) -> Floats | None:
@@ -179,8 +179,8 @@ def _corner_uv(
 ) -> tuple[Floats, str] | None:
     """Texture coordinates of corners, shape (C, 2), and the name of their list."""
     for name in _CORNER_UV:
-        one = element.find(name)
-        if one is not None and one.counted:
+        given = element.find(name)
+        if given is not None and given.counted:
             lists = rows.lists(name)
             if (lists.sizes == 2 * faces.sizes).all():
                 with np.errstate(over="ignore", invalid="ignore"):
@@ -190,6 +190,6 @@ def _corner_uv(
 
 
 def _note_others(element: Element, used: set[str], what: str, notes: Notes) -> None:
-    for one in element.properties:
-        if one.name not in used:
-            notes.add(f"the property {one.name!r} of {what} of a PLY file is not used")
+    for p in element.properties:
+        if p.name not in used:
+            notes.add(f"the property {p.name!r} of {what} of a PLY file is not used")

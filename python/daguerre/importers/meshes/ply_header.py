@@ -64,7 +64,7 @@ class Element:
 
     def find(self, name: str) -> Property | None:
         """Property of a name."""
-        return next((one for one in self.properties if one.name == name), None)
+        return next((p for p in self.properties if p.name == name), None)
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class Header:
 
     def find(self, name: str) -> Element:
         """Element of a name that is there."""
-        return next(one for one in self.elements if one.name == name)
+        return next(element for element in self.elements if element.name == name)
 
 
 def read_header(data: Bytes, where: str) -> Header:
@@ -167,7 +167,7 @@ class _Reader:
             case _:
                 self._fail(f"a property of {', '.join(_TYPES)}", line)
         own = self._elements[-1][2]
-        if any(one.name == name for one in own):
+        if any(p.name == name for p in own):
             self._fail("each property once", f"{name} again")
         self._properties += 1
         if self._properties > _MOST_PROPERTIES:

@@ -56,10 +56,9 @@ class Rows:
     def __init__(self, element: Element, data: Bytes, begin: int, order: str, where: str) -> None:
         self._element, self._data, self._begin, self._order = element, data, begin, order
         self._fields = [
-            (one.counted and order + one.counted, np.dtype(one.type).itemsize)
-            for one in element.properties
+            (p.counted and order + p.counted, np.dtype(p.type).itemsize) for p in element.properties
         ]
-        self._lists = [one.name for one in element.properties if one.counted]
+        self._lists = [p.name for p in element.properties if p.counted]
         try:
             rows = self._followed() if self._lists else self._equal()
         except CoreError as error:
@@ -85,12 +84,12 @@ class Rows:
 
     def _number(self, name: str) -> int:
         """Place of a property in its row."""
-        return next(i for i, one in enumerate(self._element.properties) if one.name == name)
+        return next(i for i, p in enumerate(self._element.properties) if p.name == name)
 
     def _equal(self) -> int:
         """Reads rows without lists; returns how many there are."""
-        types = [self._order + one.type for one in self._element.properties]
-        record = np.dtype([(f"f{i}", one) for i, one in enumerate(types)])
+        types = [self._order + p.type for p in self._element.properties]
+        record = np.dtype([(f"f{i}", kind) for i, kind in enumerate(types)])
         rows = self._element.count
         if record.itemsize:
             rows = min(rows, (len(self._data) - self._begin) // record.itemsize)

@@ -22,7 +22,7 @@ class NotANumberError(ValueError):
 
     Attributes:
         line: Its line in the text, from 0.
-        wanted: Words for an error: what belongs here.
+        wanted: Words for an error: the wanted kind of number.
         word: The word, for messages.
     """
 
@@ -72,7 +72,7 @@ def _piece(text: bytes, begin: int, end: int, kind: type[float | int]) -> NDArra
             raise ValueError
         rest = np.fromiter(map(kind, words), np.dtype(kind), len(words))
     except (ValueError, OverflowError):
-        at = next(one for one in re.finditer(rb"\S+", piece) if not _is(one[0], kind))
+        at = next(word for word in re.finditer(rb"\S+", piece) if not _is(word[0], kind))
         line = text.count(b"\n", 0, begin + stopped + at.start())
         wanted = "a number" if kind is float else "a whole number"
         raise NotANumberError(line, wanted, short(at[0].decode("latin-1"))) from None

@@ -14,7 +14,7 @@ def chart_of(mesh: Mesh, world: NDArray[np.float64]) -> Chart:
     """Chart of a mesh in the scene.
 
     Args:
-        mesh: Triangles; without texture coordinates the chart is the default one.
+        mesh: Triangles; the chart is the default without texture coordinates.
         world: Scene from the mesh, shape (4, 4).
     """
     if mesh.uv is None or not len(mesh.indices):

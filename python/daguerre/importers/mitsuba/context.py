@@ -19,11 +19,11 @@ class Context:
 
     Attributes:
         document: The file.
-        scene: Receives what is read.
+        scene: Receives the content of the file.
         unit_m: Length of a unit of the file, m.
         notes: Receives notes.
-        mirrored: Whether the scene is the mirror image of the file's: its camera is mirrored,
-            which no lens does.
+        mirrored: Whether the scene is the mirror image of the file's, because the file's camera is
+            mirrored, which no lens is.
     """
 
     document: Document

@@ -109,8 +109,8 @@ class Document:
 
     def _resolve(self) -> None:
         """Puts objects in the place of references to them."""
-        for one, name in self.references:
-            one.value = self.named(name, one.entry)
+        for reference, name in self.references:
+            reference.value = self.named(name, reference.entry)
         _check_depth(self.root)
 
 
@@ -125,7 +125,7 @@ def _check_depth(root: Node) -> None:
     inside: set[int] = set()
     while waiting:
         node, is_done = waiting.pop()
-        below = [one.value for one in node.properties if isinstance(one.value, Node)]
+        below = [item.value for item in node.properties if isinstance(item.value, Node)]
         if is_done:
             inside.discard(id(node))
             height[id(node)] = 1 + max((height[id(child)] for child in below), default=0)
@@ -146,7 +146,7 @@ class _Reader:
     """Reads one file.
 
     Args:
-        document: Receives what is read.
+        document: Receives the content of the file.
         files: Folders of the files that it names.
         name: Path of the file, for messages.
         includes: Number of files around it.
@@ -301,7 +301,7 @@ def _leaf(element: Element, entry: Entry) -> None:
 def _check_once(node: Node) -> None:
     """Checks that each name of a property occurs once."""
     seen: set[str] = set()
-    for one in node.properties:
-        if one.name and one.name in seen:
-            one.entry.fail(f"the property {short(one.name)} appears twice")
-        seen.add(one.name)
+    for item in node.properties:
+        if item.name and item.name in seen:
+            item.entry.fail(f"the property {short(item.name)} appears twice")
+        seen.add(item.name)

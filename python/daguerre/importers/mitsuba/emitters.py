@@ -139,7 +139,7 @@ class Emitters:
         return made @ TURN, mirrored
 
     def _axes(self) -> Matrix:
-        """Directions of the scene from those of the file, shape (3, 3)."""
+        """Directions in the scene from directions in the file, orthogonal, shape (3, 3)."""
         return self._world[:3, :3] / self._metres
 
     # The sky --------------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
-"""Files that a scene names: found in its folders, and only in those that may be read.
+"""Files that a scene names: searched in its folders, and read only from allowed folders.
 
-Mitsuba looks in the folder of the file that names another, then in those of the files that include
-it, and in folders of ``<path>`` elements, the last of which comes first.
+Mitsuba looks in the folder of the file that names another, then in the folders of the files that
+include it, and in folders of ``<path>`` elements, the last such element first.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Files:
 
     Args:
         scene: Path of the scene.
-        allow_dirs: Further folders whose files may be read.
+        allow_dirs: Further folders from which files may be read.
     """
 
     def __init__(self, scene: Path, allow_dirs: Iterable[str | os.PathLike[str]] = ()) -> None:
@@ -31,13 +31,13 @@ class Files:
         self._folders = [self._allowed[0]]
 
     def within(self, folder: Path) -> Files:
-        """Files for what is in another folder, which comes first."""
+        """Files for a scene file in another folder, which is searched first."""
         made = object.__new__(Files)
         made._allowed, made._folders = self._allowed, [folder, *self._folders]
         return made
 
     def prepend(self, name: str, entry: Entry) -> None:
-        """Adds a folder of a ``<path>``, which comes first.
+        """Adds a folder of a ``<path>``, which is searched first.
 
         Raises:
             InputError: There is no such folder, or it may not be read.

@@ -36,11 +36,11 @@ IOR = {
 
 
 def relative_index(node: Node, inside: str) -> float:
-    """Index of the inside of a surface over that of the outside.
+    """Ratio of the indices inside and outside of a surface.
 
     Args:
         node: Material with ``int_ior`` and ``ext_ior``.
-        inside: Name of the default inside; outside it is air.
+        inside: Name of the default inside; the default outside is air.
 
     Raises:
         InputError: A name is unknown, or a number out of its range.

@@ -46,7 +46,7 @@ class Entry:
 
 @dataclass
 class Ledger:
-    """All elements of a scene, those of included files among them."""
+    """All elements of a scene, including elements of included files."""
 
     entries: list[Entry] = field(default_factory=list)
 

@@ -40,12 +40,12 @@ class Look:
 
     Attributes:
         kind: Kind of the material, unless it is a blend.
-        two_sided: Whether it is seen from behind, too; others are black there.
+        two_sided: Whether the surface is seen from behind, too; otherwise its back is black.
         opacity: Share of the surface that is there, a factor on a texture.
         opacity_texture: Texture of opacity.
         relief: Normal map or bump map.
-        attribute: Attribute of the mesh whose colours are factors on the kind's, or empty.
-        blend: Looks that it is blended of, which have the relief, or None.
+        attribute: Attribute of the mesh with colours that multiply the kind's, or empty.
+        blend: Blended looks, which have their relief, or None.
         name: Name of the material.
     """
 
@@ -60,7 +60,7 @@ class Look:
 
     @cached_property
     def reliefs(self) -> frozenset[Relief]:
-        """Its relief, and those of what it is blended of."""
+        """Reliefs of the look, and of the looks that it blends."""
         parts = () if self.blend is None else (self.blend.first, self.blend.second)
         own = frozenset(() if self.relief is None else (self.relief,))
         return own.union(*(part.reliefs for part in parts))

@@ -1,7 +1,7 @@
-"""Materials: a look, what shines from it, and the media on its sides.
+"""Materials: a look, its emission, and the media on its sides.
 
 Adapters, materials around other materials, are here: ``twosided``, ``mask``, ``normalmap``,
-``bumpmap`` and ``blendbsdf``. What is not supported is grey, with a note.
+``bumpmap`` and ``blendbsdf``. Unsupported materials are grey, with a note.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Sides:
     exterior: Medium | None = None
 
 
-#: Looks of shapes without a material: those of lamps reflect nothing.
+#: Looks of shapes without a material: lamps reflect nothing.
 _GREY, _BLACK = Look(), Look(Diffuse((0.0, 0.0, 0.0)), two_sided=True)
 
 
@@ -60,7 +60,7 @@ class Materials:
     def index(
         self, bsdf: Node | None, chart: Chart, glow: Glow, sides: Sides, *, black: bool = False
     ) -> int:
-        """Index of the material of a shape; ``black``: what it is without a look of its own."""
+        """Index of the material of a shape; ``black``: a shape without a material is black."""
         usual = _BLACK if black else _GREY
         look = usual if bsdf is None else self.look(bsdf)
         return self._index(look, chart, glow, sides)
@@ -183,7 +183,7 @@ class Materials:
         if len(found) != 2:
             node.fail(f"wanted two materials inside, got {len(found)}")
         amount, slot = self._textures.scalar(node, "weight", 0.5)
-        first, second = (self.look(one) for one in found)
+        first, second = (self.look(bsdf) for bsdf in found)
         return Look(
             two_sided=first.two_sided and second.two_sided,
             blend=Blend(first, second, amount, slot),

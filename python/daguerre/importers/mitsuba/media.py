@@ -97,7 +97,7 @@ class Media:
     def _color(
         self, node: Node, name: str, default: float, hue: Color = (1.0, 1.0, 1.0)
     ) -> Color | Spectrum:
-        """Coefficient; that of a grid is its hue, as its values are densities."""
+        """Coefficient; for a grid ``hue``, as the grid's values are densities."""
         found = node.find(name)
         if found is None or not isinstance(found.value, Node) or found.value.kind != "volume":
             return self._textures.color(node, name, default)
@@ -183,8 +183,8 @@ class Media:
         share = min(max(node.number("weight", 0.5), 0.0), 1.0)
         lobes = [
             (g, weight * part)
-            for one, part in zip(found, (1 - share, share), strict=True)
-            for g, weight in self._phase(one)
+            for phase, part in zip(found, (1 - share, share), strict=True)
+            for g, weight in self._phase(phase)
         ]
         if len(lobes) > MAX_LOBES:
             node.fail(f"wanted at most {MAX_LOBES} phase functions, got {len(lobes)}")
@@ -202,8 +202,8 @@ def _combined(
     if not isinstance(a, Spectrum) and not isinstance(b, Spectrum):
         x, y, z = (max(float(function(p, q)), 0.0) for p, q in zip(a, b, strict=True))
         return x, y, z
-    nm = sorted({n for one in (a, b) if isinstance(one, Spectrum) for n in one.wavelengths_nm})
-    first, second = (one.at(nm) if isinstance(one, Spectrum) else _mean(one) for one in (a, b))
+    nm = sorted({n for v in (a, b) if isinstance(v, Spectrum) for n in v.wavelengths_nm})
+    first, second = (v.at(nm) if isinstance(v, Spectrum) else _mean(v) for v in (a, b))
     return Spectrum(tuple(nm), tuple(np.maximum(function(first, second), 0).tolist()))
 
 

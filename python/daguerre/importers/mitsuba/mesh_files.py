@@ -27,16 +27,16 @@ _COLORS = ("vertex_color", "face_color")
 
 @dataclass(frozen=True)
 class Wanted:
-    """A mesh of a file, and what is to be done with it.
+    """Request for a mesh of a file.
 
     Attributes:
         file: The file.
-        plugin: Its format.
+        plugin: Format of the file.
         number: Mesh of a file with several.
-        flat: Whether its faces are flat, without normals of vertices.
-        upside_down: Whether v is turned around.
-        inside_out: Whether it faces the other side.
-        attribute: Attribute whose colours are used, or empty.
+        flat: Whether faces are flat, without vertex normals.
+        upside_down: Whether v is flipped.
+        inside_out: Whether the front is flipped.
+        attribute: Attribute with the vertex colours, or empty.
     """
 
     file: Path
@@ -125,7 +125,7 @@ def colored_by_faces(mesh: FileMesh) -> FileMesh:
 
 
 def along_normals(mesh: FileMesh, normals: NDArray[np.float32]) -> FileMesh:
-    """The mesh whose faces look where its normals do, which say in Mitsuba what its front is."""
+    """Flips faces to agree with the normals, which decide the front in Mitsuba."""
     if not lie_against(mesh.positions, mesh.corners, mesh.sizes, normals):
         return mesh
     turned = inside_out(mesh)

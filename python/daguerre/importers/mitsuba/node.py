@@ -1,6 +1,6 @@
 """Objects of a scene file, such as a shape or a material, and their properties.
 
-A property that is read counts as used; what nobody reads becomes a note (``unread``).
+A property counts as used once it is read; unused properties become notes (``unread``).
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ class Property:
     """A property of an object.
 
     Attributes:
-        name: Its name; ``""`` for nested objects without one.
-        tag: Its element: ``float``, ``rgb``, ``transform``, ...; ``object`` for nested objects.
+        name: Name of the property; ``""`` for unnamed nested objects.
+        tag: Kind of element: ``float``, ``rgb``, ``transform``, ...; ``object`` for nested objects.
         value: Number, flag, text, tuple of numbers, matrix (4, 4), or ``Node``.
         entry: The element, for messages and accounts.
         parts: Elements inside it, such as the steps of a transform.
@@ -42,14 +42,14 @@ class Property:
     parts: list[Entry] = field(default_factory=list)
 
     def take(self) -> Any:
-        """Value, which counts as used; an object does so by itself (``Node.use``)."""
+        """Value, which then counts as used; for an object, ``Node.use`` counts."""
         if not (isinstance(self.value, Node) and self.value.entry is self.entry):
             for entry in (self.entry, *self.parts):
                 entry.used = True
         return self.value
 
     def wrong(self, wanted: str) -> NoReturn:
-        """Raises ``InputError``: the value is not what is wanted."""
+        """Raises ``InputError``: the value is not as wanted."""
         got = short(self.value) if self.tag in _PLAIN else f"<{self.tag}>"
         self.entry.fail(f"wanted {wanted}, got {got}")
 
@@ -85,7 +85,7 @@ class Node:
 
     def find(self, name: str) -> Property | None:
         """Property of a name, without using it."""
-        return next((one for one in self.properties if one.name == name), None)
+        return next((item for item in self.properties if item.name == name), None)
 
     def has(self, name: str) -> bool:
         """Whether there is a property of this name."""
@@ -93,9 +93,9 @@ class Node:
 
     def skip(self, *names: str) -> None:
         """Counts properties as used that have no effect on a picture here."""
-        for one in self.properties:
-            if one.name in names and not isinstance(one.value, Node):
-                one.take()
+        for item in self.properties:
+            if item.name in names and not isinstance(item.value, Node):
+                item.take()
 
     # Values ---------------------------------------------------------------------------------------
 
@@ -179,15 +179,15 @@ class Node:
 
     def objects(self, *kinds: str) -> Iterator[tuple[Property, Node]]:
         """Nested objects of some kinds, with the properties that hold them; not yet used."""
-        for one in self.properties:
-            if isinstance(one.value, Node) and one.value.kind in kinds:
-                yield one, one.value
+        for item in self.properties:
+            if isinstance(item.value, Node) and item.value.kind in kinds:
+                yield item, item.value
 
     def nested(self, *kinds: str) -> list[Node]:
         """Nested objects of some kinds, which count as used."""
         found = []
-        for one, node in self.objects(*kinds):
-            one.take()
+        for item, node in self.objects(*kinds):
+            item.take()
             if not node.entry.noted:  # else it was left out
                 node.use()
             found.append(node)
@@ -220,15 +220,15 @@ def _mark(top: Node) -> None:
             continue
         seen.add(id(node))
         node.entry.noted = True
-        for one in node.properties:
-            for entry in (one.entry, *one.parts):
+        for item in node.properties:
+            for entry in (item.entry, *item.parts):
                 entry.noted, entry.used = True, False
-            if isinstance(one.value, Node) and one.entry is one.value.entry:  # no reference
-                waiting.append(one.value)
+            if isinstance(item.value, Node) and item.entry is item.value.entry:  # no reference
+                waiting.append(item.value)
 
 
 def unread(root: Node, notes: Notes) -> None:
-    """Notes what nobody has read below an object."""
+    """Notes unused properties and objects below an object."""
     seen: set[int] = set()
     waiting = [root]
     while waiting:
@@ -236,31 +236,31 @@ def unread(root: Node, notes: Notes) -> None:
         if id(node) in seen or (node.entry.noted and not node.entry.used):
             continue
         seen.add(id(node))
-        for one in reversed(node.properties):
-            value = one.value
+        for item in reversed(node.properties):
+            value = item.value
             if isinstance(value, Node) and value.entry.used:
-                if not (one.entry.used or one.entry.noted):
+                if not (item.entry.used or item.entry.noted):
                     notes.add(
                         f"{node.kind} {short(node.plugin)}: a reference to "
                         f"{_named(value)} is not supported"
                     )
-                _settle(one)
+                _settle(item)
                 waiting.append(value)
             elif isinstance(value, Node) and not value.entry.noted:
                 leave_out(value, notes, f"{_named(value)} is unused and left out")
-                _settle(one)
+                _settle(item)
             elif isinstance(value, Node):
-                _settle(one)
-            elif not (one.entry.used or one.entry.noted):
-                name = short(one.name)
+                _settle(item)
+            elif not (item.entry.used or item.entry.noted):
+                name = short(item.name)
                 notes.add(f"{node.kind} {short(node.plugin)}: {name} is not supported")
-                for entry in (one.entry, *one.parts):
+                for entry in (item.entry, *item.parts):
                     entry.noted = True
 
 
-def _settle(one: Property) -> None:
-    """Gives a reference the state of what it names."""
-    one.entry.noted = one.entry.noted or not one.entry.used
+def _settle(item: Property) -> None:
+    """Marks an unused reference as noted."""
+    item.entry.noted = item.entry.noted or not item.entry.used
 
 
 def _named(node: Node) -> str:

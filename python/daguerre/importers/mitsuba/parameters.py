@@ -75,7 +75,7 @@ class Parameters:
         return "".join(made)
 
     def _part(self, sign: str, after: str, entry: Entry) -> str:
-        """Text after a sign, and what stands for the sign and the longest name after it."""
+        """Expands a sign and the longest parameter name after it; keeps the rest of the text."""
         if sign != "$":
             return sign.removeprefix("\\") + after
         for length in sorted(self._lengths, reverse=True):
@@ -90,7 +90,7 @@ class Parameters:
         """Checks that the file has every parameter of the caller.
 
         Raises:
-            UsageError: It lacks one.
+            UsageError: The file lacks a parameter.
         """
         if self._unused:
             name = min(self._unused)

@@ -1,6 +1,6 @@
 """Places shapes: their meshes, materials and instances.
 
-Meshes are shared: those of one file, and those of a shape group by all its instances.
+Shapes of one file share its mesh, and instances of a shape group share the group's meshes.
 """
 
 from __future__ import annotations

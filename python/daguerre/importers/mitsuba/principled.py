@@ -119,7 +119,7 @@ def _widths(textures: Textures, roughness: Channel, anisotropic: Channel) -> tup
 
 
 def _stretch(along: object, across: object) -> object:
-    """Anisotropy of glTF, whose widths are r^2 + (1 - r^2) s^2 along and r^2 across."""
+    """Anisotropy s of glTF, with alpha r^2 + (1 - r^2) s^2 along and r^2 across."""
     wide, narrow = np.asarray(along), np.asarray(across)
     return np.sqrt(np.clip((wide - narrow) / np.maximum(1 - narrow, 1e-6), 0, 1))
 

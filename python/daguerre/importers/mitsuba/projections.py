@@ -26,7 +26,7 @@ Shine = Callable[[Array, Array, Array], Array]
 
 
 def lamps(shine: Shine, widest: float) -> list[tuple[Color, LightProfile]]:
-    """Intensities and profiles of lamps in one place that together shine as one.
+    """Intensities and profiles of lamps in one place; their sum is the light.
 
     Args:
         shine: Intensity by direction, cd.
@@ -72,7 +72,7 @@ def _table(shine: Shine, widest: float) -> Array:
 
 def looked_up(value: Value, u: Array, v: Array) -> Array:
     """Colours of a texture at coordinates from the top left, shape (N, 3)."""
-    return np.stack([_channel(one, u, v) for one in broadcast(value, 3)], axis=1)
+    return np.stack([_channel(channel, u, v) for channel in broadcast(value, 3)], axis=1)
 
 
 def _channel(channel: Channel, u: Array, v: Array) -> Array:

@@ -1,7 +1,7 @@
 """Reads scenes of Mitsuba: joins objects of the file, shapes, materials, lights, media, cameras.
 
-Start reading here; other modules of this folder read one kind of object each. Any fault in a file
-gives one ``InputError`` with file, line, element, what was wanted and what was got.
+Start reading here; each other module of this folder reads one kind of object. A fault in a file
+raises an ``InputError`` with the file, the line, the element, the wanted value and the value found.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def read(
         allow_dirs: Folders, besides the scene's own, from which it may read files.
 
     Returns:
-        The scene; ``warnings`` has notes on what is not supported.
+        The scene; ``warnings`` has notes on unsupported content.
 
     Raises:
         InputError: The file cannot be read or is invalid.

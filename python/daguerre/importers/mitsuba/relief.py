@@ -62,8 +62,8 @@ def _from_heights(heights: Channel, scale: float, chart: Chart) -> Value | None:
     encoded = (0.5 + 0.5 * normals).astype(np.float32)
     name = heights.plane.name
     return tuple(
-        Texel(Plane(freeze_in_place(np.ascontiguousarray(one)), name=name), heights.mapping)
-        for one in encoded
+        Texel(Plane(freeze_in_place(np.ascontiguousarray(channel)), name=name), heights.mapping)
+        for channel in encoded
     )
 
 

@@ -1,7 +1,7 @@
 """Settings of a render in a scene file: film, filter, sampler and integrator.
 
-A scene of Daguerre has no settings: they are those of the call or of the command line. A note
-tells the flags that repeat the file's.
+A scene of Daguerre has no settings: the call or the command line sets them. A note lists the flags
+that repeat the file's settings.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .node import Node, leave_out
 _PATHS = ("path", "volpath", "volpathmis", "ptracer", "prb", "prbvolpath", "bdpt", "volpath_simple")
 #: Integrators that wrap another one.
 _WRAPPERS = ("moment", "aov", "adaptive", "multichannel")
-#: Reconstruction filters, and ours that is nearest.
+#: Reconstruction filters, and the nearest filter here.
 _FILTERS = {
     "box": "box",
     "gaussian": "gaussian",
@@ -67,7 +67,7 @@ class Settings:
 
 
 def settings_of(sensor: Node, max_depth: int | None, notes: Notes) -> Settings:
-    """Settings of a sensor, with those of the integrator.
+    """Settings of a sensor, with the integrator's depth.
 
     Raises:
         InputError: A number is wrong; the message names file, line and element.

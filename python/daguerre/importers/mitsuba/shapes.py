@@ -43,7 +43,7 @@ def solid_of(node: Node) -> Solid | None:
 
 
 def inward(node: Node) -> bool:
-    """Whether the normals of a shape point inward: those of a mirrored sphere do in Mitsuba."""
+    """Whether the normals of a shape point inward: Mitsuba's normals of a mirrored sphere do."""
     flipped = node.flag("flip_normals", False)
     return flipped != (node.plugin == "sphere" and mirrors(node.transform()))
 
@@ -98,7 +98,7 @@ def _cube(node: Node) -> Solid:
 
 
 def _v_up(mesh: ShapeMesh) -> ShapeMesh:
-    """The same mesh whose v rises the other way."""
+    """The same mesh with v flipped."""
     return replace(mesh, uv=mesh.uv * (1, -1) + (0, 1))
 
 

@@ -55,38 +55,38 @@ class Spectra:
     def __init__(self, read: ReadFile, notes: Notes) -> None:
         self._read, self._notes = read, notes
 
-    def value(self, one: Property) -> Color | Spectrum | None:
+    def value(self, found: Property) -> Color | Spectrum | None:
         """Colour or spectrum of a property, which is no texture; None, and a note: no such file.
 
         Raises:
             InputError: It is none.
         """
-        one.take()
+        found.take()
         try:
-            made = self._plain(one) if one.tag != "object" else self._node(one.value)
+            made = self._plain(found) if found.tag != "object" else self._node(found.value)
         except _Missing as missing:
             self._notes.add("a spectrum whose file is missing is left out", name=str(missing))
             return None
         values = made.values if isinstance(made, Spectrum) else made
         if min(values) < 0:
-            one.entry.fail(f"wanted values of at least 0, got {min(values):g}")
+            found.entry.fail(f"wanted values of at least 0, got {min(values):g}")
         return made
 
-    def _plain(self, one: Property) -> Color | Spectrum:
-        if one.tag in ("float", "integer"):
-            return _grey(float(one.value))
-        if one.tag == "rgb":
-            r, g, b = one.value
+    def _plain(self, found: Property) -> Color | Spectrum:
+        if found.tag in ("float", "integer"):
+            return _grey(float(found.value))
+        if found.tag == "rgb":
+            r, g, b = found.value
             return r, g, b
-        if one.tag == "srgb":
-            return _linear(one.value)
-        if one.tag == "spectrum":
-            text, file = one.value
-            return self._text(text, file, one.entry)
-        if one.tag == "blackbody":
-            kelvin, scale = one.value
-            return glowing(kelvin, scale, one.entry)
-        one.wrong("a colour or spectrum")
+        if found.tag == "srgb":
+            return _linear(found.value)
+        if found.tag == "spectrum":
+            text, file = found.value
+            return self._text(text, file, found.entry)
+        if found.tag == "blackbody":
+            kelvin, scale = found.value
+            return glowing(kelvin, scale, found.entry)
+        found.wrong("a colour or spectrum")
 
     def _text(self, text: str, file: str, entry: Entry) -> Color | Spectrum:
         """Constant, or pairs ``wavelength:value``, or a file of such pairs."""

@@ -36,7 +36,7 @@ from .transforms import uv_part
 
 UV = "uv"
 _WRAPS = ("repeat", "mirror", "clamp")
-#: Formats whose numbers are light; those of others are encoded as sRGB.
+#: Formats with linear values; other formats are encoded as sRGB.
 _LINEAR = (".exr", ".hdr", ".rgbe", ".pfm")
 
 
@@ -179,7 +179,7 @@ class Textures:
         return _triple(default) if value is None else value
 
     def spectra(self, node: Node) -> Spectra:
-        """Reader of spectra whose files are named in an object."""
+        """Reader of spectra in files that an object names."""
         return Spectra(self._document.files_of(node).read, self._notes)
 
     def _is_texture(self, found: Property) -> bool:
@@ -264,10 +264,10 @@ def _mapped(node: Node) -> tuple[float, float, float, float, float, float]:
 def _swapped(value: Value) -> Value:
     """A checkerboard with its colours exchanged, as Mitsuba 3.9 has it where it wants a number."""
     return tuple(
-        replace(one, mapping=replace(one.mapping, transform=_shifted(one.mapping.transform)))
-        if isinstance(one, Texel)
-        else one
-        for one in value
+        replace(c, mapping=replace(c.mapping, transform=_shifted(c.mapping.transform)))
+        if isinstance(c, Texel)
+        else c
+        for c in value
     )
 
 
@@ -290,7 +290,7 @@ def _triple(value: Color | float) -> Color:
 
 
 def _means(value: Value) -> Color:
-    r, g, b = (one.mean() if isinstance(one, Texel) else _number(one) for one in value)
+    r, g, b = (c.mean() if isinstance(c, Texel) else _number(c) for c in value)
     return r, g, b
 
 

@@ -1,4 +1,4 @@
-"""Names of Mitsuba before 2.0 in those of today, by the rules of Mitsuba's own loader.
+"""Translates names of Mitsuba before 2.0 to current names, by the rules of Mitsuba's loader.
 
 Properties in camelCase get underscores, the colour of ``diffuse`` is its ``reflectance``, and
 offsets and scales of texture coordinates become a transform.
@@ -21,8 +21,8 @@ _OFFSETS = ("uoffset", "voffset")
 
 def upgraded(node: Node) -> None:
     """Replaces old names of an object."""
-    for one in node.properties:
-        one.name = underscored(one.name)
+    for item in node.properties:
+        item.name = underscored(item.name)
     if node.plugin == "diffuse" and node.has("diffuse_reflectance") and not node.has("reflectance"):
         renamed = node.find("diffuse_reflectance")
         assert renamed is not None
@@ -37,14 +37,14 @@ def underscored(name: str) -> str:
 
 
 def _as_transform(node: Node) -> None:
-    """Scale after offset of texture coordinates, as one transform."""
+    """Scale after offset of texture coordinates, as item transform."""
     scale = [node.number(name, 1.0) for name in _SCALES]
     offset = [node.number(name, 0.0) for name in _OFFSETS]
     matrix = np.diag([*scale, 1.0, 1.0])
     matrix[:2, 3] = np.multiply(scale, offset)
-    old = [one for one in node.properties if one.name in (*_SCALES, *_OFFSETS)]
-    for one in old:
-        node.properties.remove(one)
-        one.entry.used = False
-    parts = [one.entry for one in old[1:]]
+    old = [item for item in node.properties if item.name in (*_SCALES, *_OFFSETS)]
+    for item in old:
+        node.properties.remove(item)
+        item.entry.used = False
+    parts = [item.entry for item in old[1:]]
     node.properties.append(Property("to_uv", "transform", matrix, old[0].entry, parts))

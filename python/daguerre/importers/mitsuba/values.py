@@ -32,7 +32,7 @@ def known(element: Element, entry: Entry, *names: str) -> None:
     """Checks that an element has no other attributes.
 
     Raises:
-        InputError: It has one.
+        InputError: The element has another attribute.
     """
     for name in element.attributes:
         if name not in names:
@@ -40,7 +40,7 @@ def known(element: Element, entry: Entry, *names: str) -> None:
 
 
 def needed(element: Element, entry: Entry, *names: str) -> list[str]:
-    """Attributes of an element, which has all of them and no other.
+    """Attributes of an element, which must have exactly these.
 
     Raises:
         InputError: It has not.

@@ -1,7 +1,7 @@
-"""Normals of meshes whose files have none: means over the faces around, weighted by their angles.
+"""Vertex normals of meshes without normals: means of the adjacent faces, weighted by their angles.
 
 Source: Thurmer and Wuthrich 1998, Computing vertex normals from polygonal facets; Mitsuba 3 uses
-them for every mesh unless ``face_normals`` is set.
+this rule for every mesh unless ``face_normals`` is set.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Bumps: heights of a texture as a normal map.
 
-pbrt moves the surface by a height d along its normal and takes the normal of what results (Blinn
-1978; Pharr, Jakob and Humphreys 2023, section 10.5.2): with steep derivatives of d along u and v
-over the lengths of dp/du and dp/dv. A normal map holds the derivatives, and each mesh scales them
-by its own mean length.
+pbrt moves the surface by a height d along its normal and takes the normal of the moved surface
+(Blinn 1978; Pharr, Jakob and Humphreys 2023, section 10.5.2): with steep derivatives of d along u
+and v over the lengths of dp/du and dp/dv. A normal map holds the derivatives, and each mesh scales
+them by the mean length of its dp/du and dp/dv.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ def normal_map(heights: Array, size: tuple[float, float], *, repeats: bool) -> N
         repeats: Whether the picture continues at its edges.
 
     Returns:
-        Shape (H, W, 3): 0.5 + 0.5 x the normal, whose third component is 1. R is along u, G along
-        v upward.
+        Shape (H, W, 3): 0.5 + 0.5 x the normal, scaled to a third component of 1. R is along u, G
+        along v upward.
     """
     rows, columns = heights.shape
     values = heights.astype(np.float64)

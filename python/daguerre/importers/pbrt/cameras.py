@@ -1,7 +1,7 @@
 """Reads ``Camera``: perspective, realistic and spherical.
 
-pbrt's camera looks along +z of a left-handed frame. Its ``fov`` is that of the film's shorter side.
-The factor that pbrt has on a picture becomes an exposure compensation, in the mode ``light``.
+pbrt's camera looks along +z of a left-handed frame. Its ``fov`` spans the film's shorter side.
+pbrt's factor on the picture becomes an exposure compensation, in the mode ``light``.
 
 Source: pbrt-v4's user's guide ("Cameras"); ``cameras.cpp`` where it is silent.
 """
@@ -46,7 +46,7 @@ _TURNS = dict.fromkeys(
 _FASTEST = 0.5
 #: Focus distance that pbrt takes for infinity, and beyond it.
 _FAR = 1e6
-#: Digits of an exposure compensation, EV: those of a lens file are not exact.
+#: Digits of an exposure compensation, EV: a lens file gives no more.
 _DIGITS = 6
 
 
@@ -74,7 +74,7 @@ class Eye:
 
 
 def mirror_of(made: Made | None) -> Array:
-    """Scene from world of pbrt, shape (4, 4): the mirror image in which the camera is a real one.
+    """Scene from world of pbrt, (4, 4): the mirror image with a right-handed camera frame.
 
     pbrt's frame is left-handed, unless the camera's transform mirrors it.
     """
@@ -87,7 +87,7 @@ def mirror_of(made: Made | None) -> Array:
 def read_camera(
     described: Description, film: FilmSize, files: Files, axes: Array, ledger: Ledger
 ) -> Camera | None:
-    """Reads the camera of a scene; None: it has none, or, with a note, one that cannot be used.
+    """Reads the camera of a scene; None: there is no camera, or, with a note, an unusable camera.
 
     Raises:
         InputError: A parameter is wrong, or its kind is not supported.
@@ -123,10 +123,10 @@ def _pose(made: Made, axes: Array, ledger: Ledger) -> tuple[Any, float]:
     """World from camera, rigid, and the scale that is left out."""
     moving = made.state.transform.inverse(made.place)
     turn = _TURNS.get(made.kind, _TURN)
-    worlds = [axes @ one @ turn for one in (moving.start, moving.end)]
+    worlds = [axes @ world @ turn for world in (moving.start, moving.end)]
     lengths = np.linalg.norm(worlds[0][:3, :3], axis=0)
     rigid = [without_scale(world) for world in worlds]
-    if any(one is None for one in rigid) or not np.isfinite(lengths).all():
+    if any(matrix is None for matrix in rigid) or not np.isfinite(lengths).all():
         return None, 1.0
     if np.ptp(lengths) > 1e-3 * lengths.max():
         ledger.notes.add("a camera that is scaled in one direction keeps its shape")
@@ -182,7 +182,7 @@ def _perspective(eye: Eye) -> Seen:
     radius = number("lensradius", 0.0, 0.0) * eye.size
     distance = number("focaldistance", _FAR, 0.0) * eye.size
     fields: dict[str, Any] = {}
-    if any(abs(one) > 1e-9 * focal for one in shift):
+    if any(abs(side) > 1e-9 * focal for side in shift):
         fields["shift"] = shift
     if not radius > 0:
         enlarged = 1.0
@@ -194,7 +194,7 @@ def _perspective(eye: Eye) -> Seen:
     fields["focal_length"] = focal * enlarged
     fields["sensor_size"] = tuple(side * enlarged for side in film.millimetres)
     if "shift" in fields:
-        fields["shift"] = tuple(one * enlarged for one in shift)
+        fields["shift"] = tuple(side * enlarged for side in shift)
     return Seen(fields, timed=eye.version == 4)
 
 

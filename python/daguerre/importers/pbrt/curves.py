@@ -1,7 +1,7 @@
 """Reads curves: strands of one material become one mesh.
 
 Every strand becomes a chain of cubic Bezier segments in the space of its object or the world. Flat
-curves, which turn toward the viewer, and ribbons are drawn as round ones.
+curves, which turn toward the viewer, and ribbons are drawn as round curves.
 
 Source: pbrt-v4's user's guide ("curve"); Farin 2002, Curves and Surfaces for CAGD.
 """
@@ -23,7 +23,7 @@ _OF_BSPLINE = {
     2: np.array([(1, 1, 0), (0, 2, 0), (0, 1, 1)]) / 2,
     3: np.array([(1, 4, 1, 0), (0, 4, 2, 0), (0, 2, 4, 0), (0, 1, 4, 1)]) / 6,
 }
-#: Cubic Bezier points from quadratic ones.
+#: Cubic Bezier points from quadratic points.
 _RAISED = np.array([(3, 0, 0), (1, 2, 0), (0, 2, 1), (0, 0, 3)]) / 3
 
 

@@ -21,11 +21,11 @@ Key = TypeVar("Key")
 class Names(Generic[Key]):
     """Definitions by name.
 
-    Whoever holds ``now`` sees later definitions, but keeps the old ones of names that are defined
-    anew, as in pbrt-v3.
+    Readers that hold ``now`` see later definitions, but a redefined name keeps its old definition
+    for them, as in pbrt-v3.
 
     Args:
-        what: Name of the things, for messages.
+        what: Kind of the definitions, for messages.
     """
 
     def __init__(self, what: str) -> None:
@@ -56,10 +56,10 @@ class Description:
         camera: Camera, with the state at its directive.
         film: Film.
         pixel_filter: Pixel filter.
-        lights: Lights, besides those of shapes.
+        lights: Lights, except area lights.
         shapes: Shapes outside of objects.
         objects: Shapes of objects, by name.
-        instances: Places where objects stand; their ``name`` is that of the object.
+        instances: Instances of objects; ``name`` is the object's name.
         media: Media by name.
     """
 

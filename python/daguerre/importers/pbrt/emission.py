@@ -1,7 +1,7 @@
 """Reads ``AreaLightSource``: the light of surfaces.
 
-In pbrt each triangle and each bilinear patch of a mesh is a light of its own, and so has the whole
-``power``; a sphere, a disk and a cylinder are one.
+In pbrt each triangle and each bilinear patch of a mesh is a separate light, and so has the whole
+``power``; a sphere, a disk or a cylinder is a single light.
 
 Source: ``DiffuseAreaLight`` of pbrt-v4, ``DiffuseAreaLight`` of pbrt-v3.
 """

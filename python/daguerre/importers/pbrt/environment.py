@@ -32,14 +32,14 @@ Picture = NDArray[np.float32]
 _MOST_ROWS, _MOST_PICTURES = 4096, 16
 #: Light of a pixel beyond any that fits into a float with two others.
 _MOST = 1e38
-#: Axes of a panorama as ``resampled`` takes it (+z in its middle, +x left of it, +y on top), in
-#: those of pbrt-v3 (-x in the middle, +y left of it, +z on top).
+#: Axes of a panorama for ``resampled`` (+z at the middle, +x left of the middle, +y on top) from
+#: axes of pbrt-v3 (-x at the middle, +y left of the middle, +z on top).
 _DOME = np.array([(0, 0, -1), (1, 0, 0), (0, 1, 0)], float)
 
 
 @dataclass(frozen=True, eq=False)
 class Sky:
-    """A light from infinity: one color, or a picture times that.
+    """A light from infinity: a color, or a picture times a color.
 
     Attributes:
         color: Luminance, cd/m2, or factor.
@@ -155,7 +155,7 @@ def _upward(image: Picture) -> float:
     s, t = np.meshgrid(middle, middle)
     cosine = np.maximum(directions_of(s, t)[..., 2], 0)
     sums = np.einsum("ijc,ij->c", image.astype(np.float64), cosine)
-    # pbrt gives pixels half of their solid angle here; its pictures are what counts.
+    # pbrt counts half of each pixel's solid angle here; this repeats it, to match its pictures.
     red, green, blue = (sums * (2 * math.pi / size**2)).tolist()
     return luminance((red, green, blue))
 

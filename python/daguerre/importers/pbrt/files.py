@@ -20,7 +20,7 @@ from daguerre.importers.file_bytes import read_bytes
 from .lexer import Lexer
 from .place import Place, Source
 
-#: Limits of all texts together, and of files within files; ``Includes`` has those of their number.
+#: Limits of the bytes of all texts, and of nested files; ``Includes`` limits their number.
 MAX_BYTES = 4 << 30
 MAX_DEPTH = 32
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
@@ -31,8 +31,8 @@ class Files:
 
     Args:
         path: First file.
-        included: Is told of every directive that includes a file.
-        allow_dirs: Further folders whose files may be read.
+        included: Called with the place of every directive that includes a file.
+        allow_dirs: Further folders from which files may be read.
     """
 
     def __init__(
@@ -67,11 +67,11 @@ class Files:
         self.leave()
 
     def enter(self, name: str, place: Place) -> Source:
-        """Opens a file within the ones that are open.
+        """Opens a file within the files that are open.
 
         Raises:
-            InputError: It leaves the scene's folder, is missing, includes itself, or there are too
-                many files.
+            InputError: The file is outside of the scene's folder, is missing, includes itself, or
+                there are too many files.
         """
         path = self._folder.resolve(place.item("name", name))
         if path in self._open:
@@ -86,7 +86,7 @@ class Files:
         return source
 
     def leave(self) -> None:
-        """Closes the last one that is open."""
+        """Closes the innermost open file."""
         self._open.pop()
 
     def find(self, name: str, place: Place, what: str) -> Path | None:
@@ -95,7 +95,7 @@ class Files:
         Args:
             name: Name in the scene.
             place: Directive that names it.
-            what: Parameter that names it.
+            what: Parameter with the name.
 
         Raises:
             InputError: The name leaves the scene's folder, or is no name of a file.

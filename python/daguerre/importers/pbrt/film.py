@@ -26,8 +26,8 @@ class FilmSize:
     Attributes:
         resolution: Width and height, px.
         millimetres: Width and height, mm.
-        gain: Factor on the picture: in pbrt-v4 without its time.
-        white: White balance, K; None: that of the light.
+        gain: Factor on the picture; in pbrt-v4 without the exposure time.
+        white: White balance, K; None: the light's.
     """
 
     resolution: tuple[int, int]
@@ -42,7 +42,7 @@ class FilmSize:
 
 
 def film_of(made: Made | None, version: int, ledger: Ledger) -> FilmSize:
-    """Reads the film of a scene; without one it is pbrt's.
+    """Reads the film of a scene; default: pbrt's default film.
 
     Raises:
         InputError: A parameter is wrong.

@@ -68,7 +68,7 @@ class Indices:
         Args:
             made: Directive.
             eta: Name of the parameter of the real part.
-            k: Name of that of the imaginary part.
+            k: Name of the parameter of the imaginary part.
         """
         copper = metals.load(_METAL)
         return self._part(made, eta, copper[0], 0), self._part(made, k, copper[1], 1)

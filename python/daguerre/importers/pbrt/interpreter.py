@@ -1,7 +1,7 @@
-"""Follows the directives of a scene and keeps what they make.
+"""Executes the directives of a scene and records the objects that they define.
 
-Nothing is made of shapes, materials and lights here: pbrt-v4 may define a texture after its use,
-and only the end of the text tells its version.
+Shapes, materials and lights are only recorded here: pbrt-v4 may define a texture after its use, and
+the version is known only at the end of the text.
 
 Source: pbrt-v4's user's guide (file format), and its parser where the guide is silent.
 """
@@ -28,7 +28,7 @@ from .transforms import Matrix, Moving, look_at, rotation, scaling, translation
 
 #: Most blocks within blocks.
 MAX_DEPTH = 10_000
-#: Largest number of a matrix: those of objects and instances are multiplied later.
+#: Largest number of a matrix: matrices of objects and instances are multiplied later.
 MAX_ENTRY = 1e100
 #: Directives before ``WorldBegin`` alone, and after it alone.
 _OPTIONS = ("Accelerator", "Camera", "Film", "Integrator", "Option", "PixelFilter", "Sampler")
@@ -176,8 +176,8 @@ class Interpreter:
 
     def _multiply(self, directive: Directive, matrix: Matrix) -> None:
         made = self._now().times_matrix(matrix, *self._state.active)
-        for one in (made.start, made.end):
-            if not (abs(one) <= MAX_ENTRY).all():
+        for transform in (made.start, made.end):
+            if not (abs(transform) <= MAX_ENTRY).all():
                 directive.place.fail(f"numbers of the matrix must be at most {MAX_ENTRY:g}")
         self._set(directive.place, transform=made)
 
@@ -321,7 +321,7 @@ class Interpreter:
     # Files --------------------------------------------------------------------------------------
 
     def _on_Import(self, directive: Directive) -> None:
-        """Reads a file whose changes of the state end with it."""
+        """Reads a file; its changes of the state end with the file."""
         state, blocks = self._state, self._blocks
         self._blocks = []
         with self._files.imported(directive.strings[0], directive.place) as lexer:

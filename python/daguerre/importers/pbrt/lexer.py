@@ -28,7 +28,7 @@ _INCLUDE = re.compile(rb'Include(?=[ \t\r\n"\[\]]|$)')
 _ESCAPE = re.compile(r"\\(.)", re.DOTALL)
 _ESCAPES = {"b": "\b", "f": "\f", "n": "\n", "r": "\r", "t": "\t"}
 _OF_NUMBERS = b"0123456789+-.eE \t\r\n"
-#: Lists of fewer words are converted word by word, which costs less than the checks of a long one.
+#: Lists of fewer words are converted word by word, which costs less than checks of the whole.
 _FEW = 32
 _FLAGS = {b"true": True, b"false": False}
 
@@ -37,10 +37,10 @@ class Includes(Protocol):
     """Opens the files that a text includes."""
 
     def enter(self, name: str, place: Place) -> Source:
-        """Opens a file within the ones that are open."""
+        """Opens a file within the files that are open."""
 
     def leave(self) -> None:
-        """Closes the last one that is open."""
+        """Closes the innermost open file."""
 
 
 class Lexer:
@@ -237,10 +237,10 @@ def _few(words: list[bytes]) -> FloatArray | None:
 def _many(text: bytes, count: int) -> FloatArray | None:
     """Numbers of a long list; None: not all words are numbers.
 
-    Older numpy stops at a word that is none, so the count is compared with that of the words.
+    Older numpy stops at the first word that is no number, so the counts are compared.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("error")  # of text that is no number
+        warnings.simplefilter("error")  # DeprecationWarning for text that is no number
         try:
             found = np.fromstring(text.decode("ascii"), np.float64, sep=" ")
         except (DeprecationWarning, ValueError):

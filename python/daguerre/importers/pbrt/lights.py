@@ -1,6 +1,6 @@
 """Reads lights without size: point, spot, distant, goniometric and projection.
 
-One unit of pbrt is 1 cd of a point light where lengths are in metres, and 1 lux of a distant one.
+One unit of pbrt is 1 cd of a point light where lengths are in metres, and 1 lux of a distant light.
 
 Source: pbrt-v4's user's guide ("Lights"), and ``lights.cpp`` for ``power`` and ``illuminance``.
 """
@@ -28,7 +28,7 @@ from .transforms import unit_of
 Array = NDArray[np.float64]
 #: Steps of the soft edge of a spot light.
 _EDGE = 64
-#: Smallest step of tables of pictures, degrees, and steps within a pixel of a small one.
+#: Smallest step of tables of pictures, degrees, and steps within a pixel of a small picture.
 _STEP, _WITHIN = 0.5, 8
 _MOST_PICTURES = 256
 _ZERO = (0.0, 0.0, 0.0)
@@ -208,9 +208,9 @@ def _projection(lights: Lights, made: Made) -> list[Placed]:
     columns = np.clip((s * width).astype(int), 0, width - 1)
     values = pixels[np.clip((t * height).astype(int), 0, height - 1), columns] * inside[..., None]
     return [
-        Placed(PointLight(one, profile=LightProfile.table(theta, values[..., i], phi)), rigid)
-        for i, one in enumerate(_primaries(color))
-        if max(one) > 0 and values[..., i].any()
+        Placed(PointLight(primary, profile=LightProfile.table(theta, values[..., i], phi)), rigid)
+        for i, primary in enumerate(_primaries(color))
+        if max(primary) > 0 and values[..., i].any()
     ]
 
 
@@ -251,7 +251,7 @@ def _grey(lights: Lights, made: Made, name: str) -> Array:
 
 
 def _picture(lights: Lights, made: Made, name: str) -> Array:
-    """Values of a light's picture, shape (H, W, 3); white without one."""
+    """Values of a light's picture, shape (H, W, 3); white without a picture."""
     lights.count(made)
     picture = lights.images.picture(str(made.place), name) if name else None
     if picture is None:
@@ -273,7 +273,7 @@ def _moved(world: Array, origin: Array) -> Array:
 
 
 def _aimed(made: Made, world: Array, origin: Array, ahead: Array) -> Array:
-    """Rigid frame at a point of the light's space whose -z is along a direction of it."""
+    """Rigid frame at ``origin`` with -z along ``ahead``, both in the light's space."""
     way = world[:3, :3] @ ahead
     length = float(np.linalg.norm(way))
     if not length > 0:

@@ -19,7 +19,7 @@ from .textures import Shade, Textures
 
 #: Largest depth of mixtures within mixtures.
 _DEEPEST = 16
-#: Material of surfaces without one; that of pbrt.
+#: Default material of surfaces, as in pbrt.
 _USUAL = Look(Diffuse((0.5, 0.5, 0.5)))
 
 
@@ -28,7 +28,7 @@ class Looks:
 
     Args:
         scene: Receives materials.
-        tools: Those of readers of materials; without ``part``.
+        tools: Tools of material readers, without ``part``.
         media: Media of the scene.
         ledger: Counts directives.
     """

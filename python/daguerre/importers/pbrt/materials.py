@@ -39,11 +39,11 @@ class Look:
     """Look of a surface.
 
     Attributes:
-        kind: Its kind.
+        kind: Kind of material.
         normals: Slot of a normal map.
         bump: Slot of a normal map whose slopes each mesh scales.
-        opacity: Share of it that is there.
-        opacity_slot: Slot of factors on that.
+        opacity: Share of the surface that is there.
+        opacity_slot: Slot of factors on the opacity.
         space: Mapping of set 1 of texture coordinates.
     """
 
@@ -99,7 +99,7 @@ def conductor(made: Made, tools: Tools) -> Kind:
 
 
 def metal(made: Made, tools: Tools, prefix: str, roughness: float) -> Conductor:
-    """Reads a metal whose parameters begin with ``prefix``."""
+    """Reads a metal with parameters that begin with ``prefix``."""
     rough = tools.roughness(made, roughness, prefix)
     if tools.textures.has(made, "reflectance"):
         shade = tools.textures.color(made, "reflectance", _WHITE)
@@ -221,14 +221,14 @@ def mixed(made: Made, tools: Tools, first: str, second: str) -> Kind | Look:
 
     An invisible part makes the other one partly transparent.
     """
-    (one, kind), (two, other) = (tools.part(made, name) for name in (first, second))
+    (a, kind), (b, other) = (tools.part(made, name) for name in (first, second))
     if isinstance(other, Boundary):
         shade = tools.textures.number(made, "amount", 0.5, lambda values: 1 - values, "1 - amount")
         return Look(kind, opacity=_share(shade.number), opacity_slot=shade.slot)
     shade = tools.textures.number(made, "amount", 0.5)
     if isinstance(kind, Boundary):
         return Look(other, opacity=_share(shade.number), opacity_slot=shade.slot)
-    return Mix(one, two, _share(shade.number), shade.slot)
+    return Mix(a, b, _share(shade.number), shade.slot)
 
 
 def _share(value: float) -> float:

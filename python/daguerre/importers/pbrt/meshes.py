@@ -175,11 +175,11 @@ class Meshes:
             self._ledger.note(made.state.emission.place, "the light of curves is left out")
         material = self._looks.index(made, look, mask, DARK)
         self._placing.add(mesh, material, Moving(), self._spots(made, outer, name, "curves"))
-        for one in strands.all:
-            if one.state.transform.moves:
+        for strand in strands.all:
+            if strand.state.transform.moves:
                 self._ledger.notes.add("a moving curve stays at its first place")
-            self._ledger.use(one.place)
-            self._ledger.tell_unread(one.parameters, one.place, one.kind)
+            self._ledger.use(strand.place)
+            self._ledger.tell_unread(strand.parameters, strand.place, strand.kind)
 
 
 def _down(uv: NDArray[np.floating]) -> NDArray[np.float32]:

@@ -1,4 +1,4 @@
-"""Equal-area maps of the sphere: a square, whose middle is +z and whose corners are -z.
+"""Equal-area maps of the sphere: a square with +z at its middle and -z at its corners.
 
 Source: Clarberg 2008, Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD; Pharr, Jakob and
 Humphreys 2023, section 3.8.3.
@@ -47,8 +47,8 @@ def directions_of(s: Array, t: Array) -> Array:
 def panorama_of(image: NDArray[np.float32], turn: Array) -> NDArray[np.float32]:
     """Makes a panorama of an equal-area map.
 
-    Light of pixels is neither lost nor made: bright ones are spread by what they cover, the rest
-    is looked up.
+    The light of pixels is kept: bright pixels are splatted over the pixels that they cover, the
+    rest is looked up.
 
     Args:
         image: Shape (N, N, 3).

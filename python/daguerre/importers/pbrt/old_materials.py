@@ -1,6 +1,6 @@
-"""Reads materials of pbrt-v3, whose names pbrt-v4 does not have.
+"""Reads materials of pbrt-v3 with names that pbrt-v4 does not have.
 
-Those that are sums of lobes have no exact twin here; a note tells which twin they get.
+Materials that are sums of lobes have no exact twin here; a note names the nearest.
 
 Source: pbrt-v3's file format; Pharr, Jakob and Humphreys 2016, section 9.2.
 """
@@ -49,7 +49,7 @@ def uber(made: Made, tools: Tools) -> Kind | Look:
 
 
 def substrate(made: Made, tools: Tools) -> Kind:
-    """Reads ``substrate`` as a coated diffuse surface whose coat reflects ``Ks`` head on."""
+    """Reads ``substrate`` as a coated diffuse surface; ``Ks`` is the coat's reflectance head on."""
     _tell(tools, "substrate", "a coated diffuse surface")
     shade = tools.textures.color(made, "Ks", _HALF)
     root = math.sqrt(min(luminance(shade.color), 0.6))
@@ -122,7 +122,7 @@ def disney(made: Made, tools: Tools) -> Kind:
 
 
 def mix(made: Made, tools: Tools) -> Kind | Look:
-    """Reads ``mix``, whose ``amount`` is the share of the first in pbrt-v3."""
+    """Reads ``mix``; in pbrt-v3 ``amount`` is the share of the first material."""
     if tools.textures.has(made, "materials"):
         return OF_V4["mix"](made, tools)
     names = [made.parameters.text(name) for name in ("namedmaterial1", "namedmaterial2")]

@@ -73,8 +73,9 @@ class Parameters:
     """Parameters of a directive.
 
     Args:
-        given: Its own.
-        inherited: Those of ``Attribute``, which count where its own do not; they may be unused.
+        given: Parameters of the directive itself.
+        inherited: Parameters of ``Attribute``, which are defaults for ``given``; they may be
+            unused.
     """
 
     def __init__(
@@ -87,7 +88,7 @@ class Parameters:
         self._asked: set[str] = set()
 
     def inheriting(self, inherited: Sequence[Parameter], color_space: str) -> Parameters:
-        """Returns the parameters with those of ``Attribute``, and the color space of their own."""
+        """Adds parameters of ``Attribute``; sets the color space of the directive's parameters."""
         own = self.given
         if color_space != "srgb":
             own = tuple(
@@ -123,7 +124,7 @@ class Parameters:
         """Reads one number within limits.
 
         Raises:
-            InputError: It is another, or not one.
+            InputError: The number is outside of the limits, or there is not one number.
         """
         found = self.find(name, "float", "integer")
         if found is None:

@@ -1,4 +1,4 @@
-"""Places meshes in the scene: shapes once, those of objects at each of their instances."""
+"""Places meshes in the scene: shapes once, shapes of objects at each instance."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Reads scenes of pbrt-v4, and of pbrt-v3 where the old names are unambiguous.
 
-Start reading here. The text is read first, as a whole (``interpreter``), then each kind of thing is
-made of it: one file each. Any fault in a file gives one ``InputError`` with file, line, column and
-directive; each directive is applied or reported in a note (``ledger``).
+Start reading here. ``interpreter`` reads the whole text first; each other module then makes one
+kind of object from it. A fault in a file raises an ``InputError`` with the file, line, column and
+directive; each directive is applied, or reported in a note (``ledger``).
 
 One unit of pbrt's radiance is 1 cd/m2; its lengths have no unit, and ``unit_m`` chooses one. pbrt's
 frame is left-handed: the scene is its mirror image in z, so that pictures are the same.

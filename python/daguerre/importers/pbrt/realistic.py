@@ -120,9 +120,9 @@ def _illuminance(made: Made, focused: Focused, f_stop: float, distance: float) -
 
 
 def _simple_share(focused: Focused, diameter: float) -> float:
-    """Share of the square around the exit pupil that passes: what pbrt-v3 shows of a radiance.
+    """Share of the square around the exit pupil that passes light: pbrt-v3's factor on radiance.
 
-    The square lies in the plane of the rear element, as the middle of the film sees the pupil.
+    The square is in the plane of the rear element, as the film's centre sees the pupil.
     """
     order, rear = focused.lens.first_order(), focused.lens.surfaces[-1].semi_diameter
     pupil, vertex = order.exit_pupil, float(focused.lens.vertices[-1])

@@ -41,7 +41,7 @@ def roughness_of(
         made: Directive of the material.
         textures: Textures of the scene.
         version: Version of pbrt, 3 or 4.
-        ledger: Receives a note on what is left out.
+        ledger: Receives a note on parameters that are left out.
         default: Roughness without a parameter.
         prefix: Beginning of the names, such as ``interface.``.
 

@@ -34,19 +34,19 @@ _DEFAULT_UV = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)])
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """A mesh in its own space.
+    """A mesh in object space.
 
     Attributes:
         positions: Shape (N, 3), m.
-        triangles: Shape (M, 3); their fronts are those of the surface.
+        triangles: Shape (M, 3), wound so that their fronts are the surface's front.
         normals: Shape (N, 3), or None.
         uv: Texture coordinates, shape (N, 2), with (0, 0) at the bottom left; or None.
-        area: Exact area of a whole shape that is one light; None: each triangle or patch is one.
-        patch: Patch of each triangle, shape (M,); None: there are none.
-        level: Times that it is subdivided by Loop's rules; 0: it is not.
+        area: Exact area of a shape that is a single light; None: each triangle or patch is a light.
+        patch: Patch of each triangle, shape (M,); None: no patches.
+        level: Levels of Loop subdivision.
         size: Factor on all positions.
-        key: Content of a shape that many directives share; None: there is no other.
-        name: Name of its file; empty: none.
+        key: Content of a shape that many directives share; None: not shared.
+        name: Name of the shape's file; empty: no file.
     """
 
     positions: NDArray[np.floating]
@@ -81,7 +81,7 @@ class Surface:
         return replace(self, normals=normals, triangles=self.triangles[:, ::-1], key=key)
 
     def with_uv(self) -> Surface:
-        """The same surface; without texture coordinates, each triangle gets those of pbrt."""
+        """The same surface; without texture coordinates, each triangle gets pbrt's."""
         if self.uv is not None or self.level:
             return self
         flat = self.triangles.reshape(-1)

@@ -1,8 +1,8 @@
 """Reads spectra and colors of parameters.
 
 A light's color in pbrt-v4 has a luminance that ``scale`` alone sets: a spectrum of any size has
-that of 1 cd/m2, and an RGB triple that of its numbers under the white of its color space. In
-pbrt-v3 spectra count as they are, relative to a constant one of 1.
+1 cd/m2, and an RGB triple the luminance of its numbers under the white of its color space. In
+pbrt-v3 spectra are used as they are, relative to a constant spectrum of 1.
 
 Source: pbrt-v4's user's guide ("Spectrum parameters"), and ``SpectrumToPhotometric`` of its code.
 """
@@ -64,7 +64,7 @@ class Samples:
         return np.interp(nm, self.nm, self.values, left=0.0, right=0.0)
 
     def constant_beyond(self, nm: FloatArray) -> FloatArray:
-        """Values at wavelengths; beyond the ends those of the ends."""
+        """Values at wavelengths; constant beyond the ends."""
         return np.interp(nm, self.nm, self.values)
 
 
@@ -82,7 +82,7 @@ class Spectra:
         self._read: dict[Path, Samples] = {}
 
     def light(self, parameter: Parameter | None) -> Color:
-        """Color of a light, whose luminance is in cd/m2 at a scale of 1; default: white.
+        """Color of a light, as luminance in cd/m2 at a scale of 1; default: white.
 
         Raises:
             InputError: The parameter is wrong.

@@ -1,6 +1,6 @@
-"""State of the graphics: what a shape or a light takes from the directives before it.
+"""State of the graphics: the settings that shapes and lights take from earlier directives.
 
-A state is never changed: directives make another one. So opening an attribute block costs nothing.
+A state never changes: directives make new states. So opening an attribute block costs nothing.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ TARGETS = ("light", "material", "medium", "shape", "texture")
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """State that counts for the next directive.
+    """State at the next directive.
 
     Attributes:
         transform: World from local; before ``WorldBegin`` camera from world.
         active: Whether directives change the start and the end of transforms.
         reversed: Whether the sides of surfaces are exchanged.
-        material: Material: a directive, or the name of one.
+        material: Material: a directive, or the name of a material.
         emission: Directive ``AreaLightSource``, or None.
         inside: Name of the medium inside of surfaces; empty: none.
         outside: Name of the medium outside.
@@ -45,16 +45,16 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class Made:
-    """Something that a directive makes, with the state at that moment.
+    """Object that a directive makes, with the state at that moment.
 
     Attributes:
-        kind: Its kind, such as ``trianglemesh``.
-        parameters: Its parameters.
-        place: Place of its directive.
+        kind: Type of the object, such as ``trianglemesh``.
+        parameters: Parameters of the directive.
+        place: Place of the directive.
         state: State of the graphics.
         textures: Textures that it may name.
         materials: Materials that it may name.
-        name: Name, if it has one.
+        name: Name; empty: unnamed.
     """
 
     kind: str

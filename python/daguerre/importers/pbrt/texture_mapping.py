@@ -1,4 +1,4 @@
-"""Mappings of textures: from a surface to coordinates s, t, whose origin is the lower left.
+"""Mappings of textures: from a surface to coordinates s, t with the origin at the lower left.
 
 Source: pbrt-v4's user's guide ("Textures"); Pharr, Jakob and Humphreys 2023, section 10.2.
 """
@@ -30,7 +30,7 @@ class UvMapping:
         return self.scale[0] * u + self.offset[0], self.scale[1] * v + self.offset[1]
 
     def transform(self, period: float) -> Six:
-        """Transform from texture coordinates of a mesh (v downward) to those of a picture.
+        """Transform from texture coordinates of a mesh (v downward) to coordinates of a picture.
 
         Args:
             period: Size of the picture in s and t.
@@ -40,7 +40,7 @@ class UvMapping:
 
     @property
     def repeats(self) -> bool:
-        """Whether what repeats in s, t repeats in u, v."""
+        """Whether a pattern that repeats in s, t repeats in u, v."""
         return all(scale == round(scale) != 0 for scale in self.scale)
 
 

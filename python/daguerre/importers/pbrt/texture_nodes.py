@@ -1,6 +1,6 @@
 """Textures as trees: each node has a color at texture coordinates.
 
-Colors are linear Rec.709, shape (..., 3); numbers have three equal ones.
+Colors are linear Rec.709, shape (..., 3); numbers have three equal components.
 """
 
 from __future__ import annotations

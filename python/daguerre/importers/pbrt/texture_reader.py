@@ -28,10 +28,10 @@ _WRAPS = ("repeat", "clamp", "black", "octahedralsphere")
 _FILTERS = {"point": "nearest", "bilinear": "linear", "trilinear": "linear", "ewa": "linear"}
 #: Encodings of pictures: exponents of their values, or sRGB's curve.
 _LINEAR, _SRGB = 1.0, "srgb"
-#: Mean values of textures that are noise in space, what is below 0 being black. One octave of pbrt
-#: has the mean magnitude 0.2, as its ``Turbulence`` says; those of ``roughness`` 0.5 are added.
+#: Mean values of textures that are noise in space, with negative values as black. One octave of
+#: pbrt has the mean magnitude 0.2, as its ``Turbulence`` says; ``roughness`` 0.5 adds octaves.
 _NOISE = {"fbm": 0.12, "wrinkled": 0.4, "windy": 0.03, "marble": 0.8, "ptex": 0.5}
-#: Share of a plane that the dots of ``dots`` cover: half of all cells have one of radius 0.35.
+#: Share of a plane that the dots of ``dots`` cover: half of all cells have a dot of radius 0.35.
 _DOTS = 0.5 * np.pi * 0.35**2
 
 

@@ -1,4 +1,4 @@
-"""Textures of materials: colors and numbers, each with a slot of a picture where there is one."""
+"""Textures of materials: colors and numbers, each with an optional slot of a picture."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Curve = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Shade:
-    """A color: a factor, and a picture where there is one.
+    """A color: a factor on an optional picture.
 
     Attributes:
         color: Factor, or the whole color.
@@ -39,7 +39,7 @@ class Shade:
 
     @property
     def number(self) -> float:
-        """The factor of a number, whose three colors are equal."""
+        """The factor of a number: its three components are equal."""
         return self.color[0]
 
 
@@ -124,7 +124,7 @@ class Textures:
         return TextureSlot(index, 0, found.mapping.transform(found.period))
 
     def mean(self, made: Made, name: str, default: float) -> float:
-        """Reads a number whose texture, if any, is replaced by its mean."""
+        """Reads a number; a texture is replaced by its mean."""
         node = self._reader.node(made, name, "float", Constant((default, default, default)))
         if not isinstance(node, Constant):
             self._ledger.notes.add(f"a texture of {name!r} is replaced by its mean")

@@ -117,7 +117,7 @@ class Moving:
         )
 
     def after(self, outer: Moving) -> Moving:
-        """Returns this transform followed by another, whose times count if it moves."""
+        """Returns this transform followed by another; the other's times count if it moves."""
         if not (self.moves or outer.moves):
             both = outer.start @ self.start
             return Moving(both, both)

@@ -1,4 +1,4 @@
-"""Files that a stage may read: those in its folder and in further allowed ones."""
+"""Files that a stage may read: files in its folder and in further allowed folders."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .anchored import SCHEME, anchored
 
 
 class Assets:
-    """Files that a stage may read: those of its folder and of the allowed ones.
+    """Files that a stage may read: files in its folder and in allowed folders.
 
     Args:
         path: File of the stage.
@@ -70,10 +70,10 @@ class Assets:
         Args:
             place: Prim and attribute, for messages.
             asset: The asset.
-            attribute: Attribute whose layer a relative path starts from.
+            attribute: Attribute; a relative path starts from its layer.
 
         Raises:
-            InputError: It leaves the folders.
+            InputError: The file is outside of the folders.
         """
         name = asset.resolvedPath
         if not name and attribute is not None and asset.path:

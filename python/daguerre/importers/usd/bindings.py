@@ -18,7 +18,7 @@ from .meshes import Choice, uv_names
 from .primvars import read_primvar
 from .values import Clock
 
-#: Colour of prims without a material and without a colour: that of USD's preview surface.
+#: Colour of prims without a material and without a colour: as in USD's preview surface.
 _GREY = (0.18, 0.18, 0.18)
 #: Largest number of materials made for the colours of one prim's elements.
 _MAX_COLORS = 512
@@ -70,9 +70,7 @@ class Bindings:
 
     def prefetch(self, prims: Iterable[Usd.Prim]) -> None:
         """Finds the materials of prims and of their subsets, and begins to decode pictures."""
-        found = [
-            one for prim in prims for one in (prim, *_subsets(UsdShade.MaterialBindingAPI(prim)))
-        ]
+        found = [p for prim in prims for p in (prim, *_subsets(UsdShade.MaterialBindingAPI(prim)))]
         if not found:
             return
         if self._collections is not None:
@@ -109,11 +107,11 @@ class Bindings:
         return self._bound(prim) is not None
 
     def whole(self, prim: Usd.Prim, *, colored: bool = False) -> int:
-        """Index of the material of a prim that has no faces of its own.
+        """Index of the material of a prim without subsets of faces.
 
         Args:
             prim: The prim.
-            colored: Whether it has colours of its own, which multiply those of its material.
+            colored: Whether the prim has colours, which multiply the material's.
         """
         if colored and self._bound(prim) is None:
             return self._materials.displayed()
@@ -122,7 +120,7 @@ class Bindings:
     def colors(self, prim: Usd.Prim, count: int) -> list[tuple[int, NDArray[np.int64]]]:
         """Materials of the ``count`` elements of a prim, each with the numbers of its elements.
 
-        Elements with colours of their own are gathered by colour, in at most ``_MAX_COLORS``.
+        Colours by element are gathered in at most ``_MAX_COLORS`` materials.
         """
         color = read_primvar(prim, "displayColor", 3, self._clock)
         if self._bound(prim) is not None or color is None or len(color) != count or count == 1:
@@ -171,7 +169,7 @@ class Bindings:
         alpha: Any = None
         if opacity is not None and len(opacity):
             varies = colored and len(opacity) != 1
-            alpha = [] if varies else float(opacity.flat[0, 0])  # a list: that of the vertices
+            alpha = [] if varies else float(opacity.flat[0, 0])  # a list: the vertices' opacity
         index = self._materials.displayed(None if colored else shown, alpha)
         return Part(Choice(subset, uv_names((), prim), colored), faces, index)
 

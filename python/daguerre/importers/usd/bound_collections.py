@@ -1,7 +1,7 @@
 """Bounds the work of collections that materials are bound to, before USD follows them.
 
-A collection may include others, which USD follows anew wherever one is included: a few of them
-multiply. Here they are followed alike, but without their prims.
+A collection may include others, and USD follows each again wherever it is included, so a few
+collections multiply. Here they are followed in the same way, but without their prims.
 
 Source: OpenUSD, ``pxr/usd/usd/collectionAPI.cpp`` (a collection within itself is left out).
 """
@@ -81,6 +81,6 @@ class BoundCollections:
             for name in ("includes", "excludes"):
                 relationship = prim and prim.GetRelationship(f"{path.name}:{name}")
                 found += relationship.GetTargets() if relationship else ()
-            inside = [one for one in found if Usd.CollectionAPI.IsCollectionAPIPath(one)]
+            inside = [path for path in found if Usd.CollectionAPI.IsCollectionAPIPath(path)]
             self._known[path] = 1 + len(found), inside
         return self._known[path]

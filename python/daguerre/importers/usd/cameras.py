@@ -1,8 +1,8 @@
 """Reads cameras of USD in a photographer's units: UsdGeomCamera, NVIDIA's attributes, and ours.
 
 Camera lengths (focal length, apertures, offsets) are tenths of a scene unit, ``focusDistance`` is
-in scene units. An ``fStop`` of 0 is a pinhole, a ``focusDistance`` of 0 is unset. What a stage
-leaves out keeps Daguerre's default. ``daguerre:*`` takes precedence over the rest.
+in scene units. An ``fStop`` of 0 is a pinhole, a ``focusDistance`` of 0 is unset. Values that are
+not authored keep Daguerre's defaults. ``daguerre:*`` takes precedence over the rest.
 
 Source: OpenUSD, UsdGeomCamera; GfCamera for the direction of offsets.
 """
@@ -32,7 +32,7 @@ from .rolling import OMNI, read_rolling
 from .stage_facts import StageFacts
 from .values import path_text
 
-#: F-stop of a moment that has none, within keys of a camera that has one at another: sharp.
+#: F-stop of keys with an f-stop of 0, a pinhole, among keys of a camera with a lens: no blur.
 _SHARP = 1e9
 _FOCUSED = ("focus_at", "focus_on")
 _STOPPED = ("t_stop", "aperture_diameter")
@@ -121,7 +121,7 @@ def _length(read: Checked, name: str, field: str) -> Any:
 
 
 def _opening(read: Checked) -> dict[str, Any]:
-    """Stop and focus; none of those that the stage leaves to Daguerre."""
+    """Parameters of stop and focus, without values that are not authored."""
     found: dict[str, Any] = {}
     if read.is_authored("fStop"):
         found |= _stop(read)
@@ -217,7 +217,7 @@ def _start(value: object) -> Any:
 
 
 def _doubt(values: dict[str, Any], notes: Notes) -> None:
-    """Notes an implausible length: the stage's unit is probably not what it says."""
+    """Notes an implausible length: the stage probably states a wrong unit."""
     focal, width = _start(values.get("focal_length")), _start(values["sensor_size"][0])
     said = ""
     if focal is not None and not 1 <= focal <= 2000:
@@ -236,7 +236,7 @@ def _shown(mm: float) -> str:
 
 
 def _unread(read: Checked) -> None:
-    """Notes what of a camera is not drawn."""
+    """Notes attributes of a camera that are not drawn."""
     if read.now("clippingPlanes"):
         read.notes.add("clipping planes of a camera are left out")
     role = read.text("stereoRole")
@@ -245,7 +245,7 @@ def _unread(read: Checked) -> None:
 
 
 def _near_clip(read: Checked) -> dict[str, Any]:
-    """Near clipping plane, if the stage itself has one; the far one would cut what a lens sees."""
+    """Near clipping plane, if authored; the far plane is left out, as lenses have no far limit."""
     if not read.is_authored("clippingRange"):
         return {}
     near, far = read.numbers("clippingRange", 2) or (0.0, 1.0)

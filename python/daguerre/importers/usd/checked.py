@@ -46,11 +46,11 @@ class Checked:
         return authored(self.prim.GetAttribute(name))
 
     def now(self, name: str) -> Any:
-        """Value at the scene's time, as a plain one; None: there is none."""
+        """Value at the scene's time, as plain Python values; None: no value."""
         return self.at(name, self.stage.clock.code)
 
     def at(self, name: str, code: Usd.TimeCode) -> Any:
-        """Value at a time code, as a plain one; None: there is none."""
+        """Value at a time code, as plain Python values; None: no value."""
         attribute = self.prim.GetAttribute(name)
         value = attribute.Get(code) if attribute else None
         return None if value is None else _plain(attribute, value)

@@ -39,17 +39,17 @@ class Clips:
 
     def add(self, sets: dict[str, Any]) -> None:
         """Adds the sets of clips of a prim in one layer."""
-        for one in sets.values():
-            if not isinstance(one, dict):
+        for clip_set in sets.values():
+            if not isinstance(clip_set, dict):
                 continue
-            told = [one[name] for name in _RANGE if _is_number(one.get(name))]
-            if len(told) == len(_RANGE):
-                self._ranges.append((told[0], told[1], told[2]))
-            elif told or "templateAssetPath" in one:
+            ranges = [clip_set[name] for name in _RANGE if _is_number(clip_set.get(name))]
+            if len(ranges) == len(_RANGE):
+                self._ranges.append((ranges[0], ranges[1], ranges[2]))
+            elif ranges or "templateAssetPath" in clip_set:
                 self._partial = True
             for name in _RANGE:
-                if _is_number(one.get(name)):
-                    self._parts[name].append(one[name])
+                if _is_number(clip_set.get(name)):
+                    self._parts[name].append(clip_set[name])
 
     def check(self) -> None:
         """Checks the number of times.
@@ -78,28 +78,28 @@ def _is_number(value: object) -> bool:
 
 def named_clips(sets: dict[str, Any]) -> Iterator[str]:
     """Clips and manifests that a prim names in one layer, as authored."""
-    for one in sets.values():
-        if isinstance(one, dict):
-            yield from asset_names(one.get("assetPaths"))
-            yield from asset_names(one.get("manifestAssetPath"))
+    for clip in sets.values():
+        if isinstance(clip, dict):
+            yield from asset_names(clip.get("assetPaths"))
+            yield from asset_names(clip.get("manifestAssetPath"))
 
 
 def templates(sets: dict[str, Any]) -> Iterator[str]:
-    """Templates of clips that a prim names in one layer, as authored."""
-    for one in sets.values():
-        if isinstance(one, dict) and isinstance(one.get("templateAssetPath"), str):
-            yield one["templateAssetPath"]
+    """Templates of clips that a prim names in clip layer, as authored."""
+    for clip in sets.values():
+        if isinstance(clip, dict) and isinstance(clip.get("templateAssetPath"), str):
+            yield clip["templateAssetPath"]
 
 
 def clips_of_template(layer: Sdf.Layer, template: str, search: Path) -> Iterator[str]:
-    """Absolute paths of files that a template of clips may mean, whatever its times.
+    """Absolute paths of files that match a template of clips, at any time.
 
     The template itself comes first, to be checked before its folder is listed.
 
     Args:
         layer: Layer that names the template.
         template: The template, with ``#`` for digits in the name of the file.
-        search: Folder that is searched as well, that of the stage.
+        search: Folder of the stage, which is searched, too.
     """
     for pattern in dict.fromkeys((anchored(layer, template), str(search / template))):
         folder, _, name = pattern.rpartition("/")
@@ -110,7 +110,7 @@ def clips_of_template(layer: Sdf.Layer, template: str, search: Path) -> Iterator
             continue
         form = re.compile(_HASHES.sub(r"-?\\d+", re.escape(name)))
         try:
-            inside = [one.name for one in Path(folder or "/").iterdir()]
+            inside = [entry.name for entry in Path(folder or "/").iterdir()]
         except (OSError, ValueError):  # no folder; no name of a folder
             continue
-        yield from (f"{folder}/{one}" for one in inside if form.fullmatch(one))
+        yield from (f"{folder}/{name}" for name in inside if form.fullmatch(name))

@@ -1,13 +1,13 @@
 """Bounds the number of prims that a stage composes, before USD composes any.
 
-A few references to references multiply to more prims than any memory holds. Here what a prim brings
-is added up once per layer and reused wherever a reference leads there: all specs count, also those
-of one prim in several layers, and of each set of variants the largest. References in a loop end
-where USD ends them.
+A few references to references multiply to more prims than any memory holds. Here the sum of a prim
+is counted once per layer and reused wherever a reference leads there. All specs count, also specs
+of a prim in several layers; for each set of variants the largest variant counts. References in a
+loop end where USD ends them.
 
-Classes that are inherited or specialized bring what their name stands for at each prim that refers
-to them from outside, too; USD calls these arcs implied. USD does not cut all loops of such arcs: a
-stage whose references lead below themselves through one is refused.
+A reference from outside also brings the opinions on its name of each inherited or specialized class
+at the referring prim; USD calls these arcs implied. USD does not cut all loops of implied arcs: a
+stage with references below themselves through an implied arc is refused.
 
 Source: OpenUSD, "LIVERPS Strength Ordering"; ``pxr/usd/pcp/primIndex.cpp`` (loops, implied arcs).
 """
@@ -33,14 +33,14 @@ _PRIM_BYTES = 1000
 #: Most references inside of one another, and prims that loops make this count look at again.
 _MOST_ARCS, _MOST_AGAIN = 128, 30_000
 _MANY = 10**15
-#: Most specs of one prim, in all that it refers to. USD leaves out the rest, after seconds for each
-#: prim. Source: ``pxr/usd/pcp/primIndex_Graph.h``, whose nodes have numbers of 16 bits.
+#: Most specs of one prim, with all its references. USD leaves out the rest, after seconds for each
+#: prim. Source: ``pxr/usd/pcp/primIndex_Graph.h`` (16-bit indices of nodes).
 _MOST_SPECS = 65_535
 
 
 @dataclass
 class _Sum:
-    """The specs and more that a prim brings.
+    """Sum of specs, prims and arcs of a prim.
 
     Attributes:
         prims: Number of specs.
@@ -59,7 +59,7 @@ class _Sum:
     loop: int = 1 << 30
 
     def add(self, other: _Sum, times: int = 1, below: int = 0, arcs: int = 0) -> None:
-        """Adds what another prim brings, without its classes and its own specs."""
+        """Adds the sum of another prim, without its classes and direct specs."""
         self.arcs = max(self.arcs, other.arcs + arcs)
         self.prims = min(self.prims + times * other.prims, _MANY)
         self.depth = max(self.depth, other.depth + below)
@@ -177,7 +177,7 @@ class _Composed:
     def _arc(
         self, found: _Sum, stack: Stack, path: Sdf.Path, arc: Arc, below: dict[str, Stack]
     ) -> Generator[_Count, _Sum, None]:
-        """Adds what an arc brings."""
+        """Adds the sum of an arc."""
         there = below.get(arc.asset) if arc.asset else stack
         if there is None:
             return
@@ -261,7 +261,7 @@ class _Composed:
     def _above(
         self, found: _Sum, stack: Stack, path: Sdf.Path, above: Sdf.Path, place: Sdf.Path
     ) -> Generator[_Count, _Sum, None]:
-        """Adds what a prim above, or a variant of it, brings at a path."""
+        """Adds the sum at a path that a prim above, or a variant of that prim, has there."""
         if place != above:
             inside = path.ReplacePrefix(above, place)
             if _has(stack, inside):

@@ -1,4 +1,4 @@
-"""Unpacks what binary layers store packed: blocks of LZ4, and steps between numbers."""
+"""Unpacks compressed parts of binary layers: blocks of LZ4, and steps between numbers."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import numpy as np
 
 
 class DamageError(Exception):
-    """Tells what is wrong with a binary layer."""
+    """A binary layer is damaged; the message says how."""
 
 
 def extremes(data: memoryview, count: int) -> tuple[int, int]:
-    """Smallest and largest of some packed 32-bit numbers: each is a step from the one before.
+    """Smallest and largest of some packed 32-bit numbers: each is a step from the previous number.
 
-    A step is the usual one, or has 1, 2 or 4 bytes, which codes of two bits tell.
+    A code of two bits gives each step: the common step, or a number of 1, 2 or 4 bytes.
     """
     codes_end = 4 + (2 * count + 7) // 8
     raw = np.frombuffer(unpacked(data, codes_end + 4 * count), np.uint8)

@@ -1,7 +1,7 @@
 """Checks binary layers ("crates") before USD opens them, as USD trusts the counts that they state.
 
 A damaged count may ask USD for all memory of the machine, or end the process. Here each count is
-held against the bytes behind it: those of the sections, and those of all arrays.
+checked against the bytes behind it: of the sections, and of all arrays.
 
 Source: OpenUSD, ``pxr/usd/sdf/crateFile.h``, ``crateValueTypes.h`` (layout).
 """
@@ -21,7 +21,7 @@ from .text_layers import too_deep, too_deep_error
 
 #: First bytes of a binary layer.
 MAGIC = b"PXR-USDC"
-#: Bytes that a byte of LZ4 can stand for, and 32-bit numbers that a byte of packed ones can.
+#: Bytes that a byte of LZ4 can stand for, and 32-bit numbers that a byte of packed numbers can.
 _LZ4, _PACKED = 255, 4 * 255
 #: Counts at the beginning of sections, and packed blocks after them.
 _SECTIONS = {b"FIELDS": (1, 2), b"FIELDSETS": (1, 1), b"PATHS": (2, 3), b"SPECS": (1, 3)}

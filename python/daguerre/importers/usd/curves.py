@@ -43,9 +43,9 @@ class Layout:
     wrap: str
 
     def spread(self, values: Array, interpolation: str) -> Array | None:
-        """Values of a primvar as one for each curve or each point; None if they do not fit.
+        """Values of a primvar by curve or by point; None if they do not fit.
 
-        Varying values of cubic curves stand at the ends of segments, and are interpolated between.
+        Varying values of cubic curves are at the ends of segments, and are interpolated between.
         """
         curves, points = len(self.counts), int(self.counts.sum())
         if interpolation == "constant" and len(values) == 1:
@@ -63,7 +63,7 @@ class Layout:
     def cut(
         self, points: Array | Dynamic, given: dict[str, Array]
     ) -> tuple[Array | Dynamic, Counts, dict[str, Array]]:
-        """Points, counts, and values for each curve or point, without what the basis cannot use."""
+        """Points, counts, and values by curve or by point, without points that the basis skips."""
         fits, total = self.fitting(), int(self.counts.sum())
         starts = np.cumsum(self.counts) - self.counts
         place = np.arange(total) - np.repeat(starts, self.counts)
@@ -178,7 +178,7 @@ def _values(
     prim: Usd.Prim, name: str, columns: int, layout: Layout, clock: Clock, notes: Notes
 ) -> Array | None:
     primvar = read_primvar(prim, name, columns, clock)
-    if primvar is None or len(primvar) == 1:  # one colour is that of the material
+    if primvar is None or len(primvar) == 1:  # a constant colour is the material's
         return None
     found = layout.spread(primvar.flat, primvar.interpolation)
     if found is None:

@@ -1,7 +1,7 @@
-"""Reads ``daguerre:*``, attributes of a camera for what UsdGeomCamera has no name for.
+"""Reads ``daguerre:*``, camera attributes that UsdGeomCamera lacks.
 
-They need no plugin: any program keeps attributes that it does not know. Parameters that are plain
-numbers, names or flags are rows of ``PLAIN``, by which ``camera_writer`` writes them, too.
+The attributes need no plugin: any program keeps attributes that it does not know. Parameters that
+are plain numbers, names or flags are rows of ``PLAIN``; the exporter writes them from it, too.
 """
 
 from __future__ import annotations
@@ -167,7 +167,7 @@ def _named(
     names: tuple[str, ...] | list[str],
     near: Callable[[str], str],
 ) -> str | None:
-    """Name of a library, or the file of an asset; ``near`` suggests names after a wrong one."""
+    """Name of a library, or the file of an asset; ``near`` suggests names after an unknown name."""
     word = read.text(f"{PREFIX}{name}:name")
     if word is not None:
         if word not in names:

@@ -37,7 +37,7 @@ EV = "exposure"
 #: USD's responsivity of a camera with a responsivity of 1. At ISO 100, 1 s and f/1, 1 cd/m2 gives
 #: the film pi / 4 lux s, and a picture 0.18 where it gets 10 / ISO lux s (ISO 12232).
 RESPONSIVITY = 100 * GREY / GREY_LX_S * ideal_h0(1.0)
-#: Relative difference below which two numbers are one, as USD's have single precision.
+#: Relative difference below which two numbers are equal, as USD has single precision.
 _SINGLE = 1e-6
 
 
@@ -49,7 +49,7 @@ def read_exposure(read: Checked, named: str | None) -> dict[str, Any]:
         named: Mode by name; None: the stage has none.
 
     Raises:
-        InputError: A value is wrong, or is what the named mode chooses.
+        InputError: A value is wrong, or is chosen by the named mode.
     """
     found: dict[str, Any] = {}
     if read.is_authored(EV):
@@ -101,7 +101,7 @@ def _is_same(
     sources: tuple[str, ...],
     of: Callable[[Camera], float | None],
 ) -> bool:
-    """Whether a value is that of a camera at each time: both keep still, or have the same keys."""
+    """Whether a value equals the camera's at each time: both constant, or with the same keys."""
     if value is None:
         return False
     moving = [camera.motion[name] for name in sources if name in camera.motion]
@@ -126,7 +126,7 @@ def never_opens(read: Checked) -> bool:
 def read_shutter(read: Checked) -> dict[str, Any]:
     """Shutter that the stage has: time in s, and where it opens in frames.
 
-    ``shutter:open`` and ``shutter:close`` are in time codes, relative to that of the frame. Both 0
+    ``shutter:open`` and ``shutter:close`` are in time codes, relative to the frame's. Both 0
     is no blur.
     """
     rate = read.stage.frame_rate

@@ -1,4 +1,4 @@
-"""Evaluates the expressions by which layers name files, after a check of what they grow to.
+"""Evaluates the expressions by which layers name files, after a check of their length.
 
 Source: OpenUSD, "Variable Expressions" (openusd.org, user guides).
 """
@@ -35,7 +35,7 @@ class Variables:
         self.key = repr(sorted(values.items())) if values else ""
 
     def below(self, layer: Sdf.Layer) -> Variables:
-        """Values in a layer that one with these values refers to; these are stronger."""
+        """Values in a layer that a layer with these values refers to; these are stronger."""
         if not layer.HasExpressionVariables():
             return self
         return Variables(self._file, {**layer.expressionVariables, **self._values})

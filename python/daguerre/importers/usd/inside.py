@@ -37,7 +37,7 @@ def seconds(request: Mapping[str, Any], tell: Tell) -> float:
 
 @contextlib.contextmanager
 def _beginning(request: Mapping[str, Any], tell: Tell) -> Iterator[None]:
-    """Takes over folder and memory of the process that asks, and tells it what is read."""
+    """Takes over folder and memory limit of the parent process, and reports uses to it."""
     with contextlib.suppress(OSError):
         os.chdir(request["folder"])
     left = request["memory"]

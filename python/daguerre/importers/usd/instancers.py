@@ -79,7 +79,7 @@ def read_copies(prim: Usd.Prim, clock: Clock, notes: Notes) -> list[Copies]:
 
 
 def _lacking(instancer: UsdGeom.PointInstancer, clock: Clock) -> str:
-    """Names what an instancer lacks that its schema requires; empty: it has all, or no copies."""
+    """Name of a required attribute that an instancer lacks; empty: complete, or no copies."""
     kinds = instancer.GetProtoIndicesAttr().Get(clock.code)
     if kinds is None:
         return "protoIndices"
@@ -99,7 +99,7 @@ class _Reader:
         self._turns = wide if clock.now(wide) else narrow
 
     def crowd(self) -> Crowd:
-        """The copies over time; those whose number changes keep the sample of one moment."""
+        """The copies over time; if their number changes, the copies of the scene's time."""
         places = self._attribute("positions")
         starts, turning = self._samples(places), self._samples(self._turns)
         flies = bool(starts) and starts == self._samples(self._attribute("velocities"))
@@ -129,7 +129,7 @@ class _Reader:
         scales = [self._each(self._attribute("scales"), code, 3, 1.0) for code in codes]
         parts = [*zip(*flights, strict=True), *zip(*turns, strict=True), scales]
         place, speed, change, turn, spin, scale = (
-            None if any(one is None for one in part) else np.stack(part) for part in parts
+            None if any(sample is None for sample in part) else np.stack(part) for part in parts
         )
         assert place is not None
         assert turn is not None
@@ -218,6 +218,6 @@ class _Reader:
 
 
 def _base(codes: list[float], code: float) -> float:
-    """The last of some time codes that is not after another one, or the first one; or that one."""
-    before = [one for one in codes if one <= code]
+    """The last of ``codes`` up to ``code``, else the first; ``code`` if there are none."""
+    before = [other for other in codes if other <= code]
     return before[-1] if before else codes[0] if codes else code

@@ -1,4 +1,4 @@
-"""Checks files of layers before USD opens them: ordinary files that hold what they say."""
+"""Checks files of layers before USD opens them: ordinary files with valid content."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lists what a layer names: other layers, classes, value clips, files inside of packages."""
+"""Lists the names in a layer: other layers, classes, value clips, files inside of packages."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ _ASSETS = ("asset", "asset[]")
 
 @dataclass(frozen=True)
 class Arc:
-    """A prim that another one refers to.
+    """Reference from a prim to another prim.
 
     Attributes:
-        asset: File as authored; empty: that of the layer itself.
+        asset: File as authored; empty: the layer itself.
         path: Path of the prim; empty: the default prim.
-        of_class: Whether it is inherited or specialized.
+        of_class: Whether the prim is inherited or specialized.
     """
 
     asset: str
@@ -65,8 +65,8 @@ def names_of(layer: Sdf.Layer, odd_assets: bool) -> LayerNames:
         odd_assets: Whether to look for assets that are expressions or inside of packages.
 
     Raises:
-        InputError: A prim that it names is not there, as USD ends the process if one is not; or
-            paths are too deep.
+        InputError: A prim that the layer names does not exist, for which USD would end the process;
+            or paths are too deep.
     """
     found = LayerNames()
     paths: list[Sdf.Path] = []
@@ -102,16 +102,16 @@ def _missing(layer: Sdf.Layer) -> InputError:
 def _add_prim(found: LayerNames, spec: Sdf.PrimSpec, path: Sdf.Path) -> int:
     found.below.setdefault(path.GetParentPath(), {})[path] = None
     arcs = [
-        Arc(one.assetPath, one.primPath)
+        Arc(item.assetPath, item.primPath)
         for key, listed in (("references", "referenceList"), ("payload", "payloadList"))
         if spec.HasInfo(key)
-        for one in getattr(spec, listed).GetAddedOrExplicitItems()
+        for item in getattr(spec, listed).GetAddedOrExplicitItems()
     ]
     arcs += (
-        Arc("", one, True)
+        Arc("", item, True)
         for key, listed in (("inheritPaths", "inheritPathList"), ("specializes", "specializesList"))
         if spec.HasInfo(key)
-        for one in getattr(spec, listed).GetAddedOrExplicitItems()
+        for item in getattr(spec, listed).GetAddedOrExplicitItems()
     )
     if arcs:
         found.arcs[path] = arcs
@@ -136,5 +136,5 @@ def asset_names(value: object) -> list[str]:
     if isinstance(value, Sdf.AssetPath):
         return [value.path]
     if isinstance(value, Sdf.AssetPathArray | list | tuple | Vt.StringArray):
-        return [one.path for one in value if isinstance(one, Sdf.AssetPath)]
+        return [path.path for path in value if isinstance(path, Sdf.AssetPath)]
     return []

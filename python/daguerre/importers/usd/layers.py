@@ -1,8 +1,8 @@
 """Opens all layers that a stage may use, each after a check of its place and its file.
 
-USD opens what layers name by itself. Here every name is followed first: sublayers, references and
+USD opens the files that layers name. Here every name is followed first: sublayers, references and
 payloads of all variants, value clips, and packages that values point into. Names may be expressions
-of variables, which a layer that refers to another one may override there.
+of variables, which a referring layer may override.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ class Layers:
         return any(names.binds_collections for names in self._names.values())
 
     def _stack(self, layer: Sdf.Layer, outer: Variables) -> Stack:
-        """Stack of a layer that one with some variables refers to."""
+        """Stack of a layer that is referred to from a layer with variables ``outer``."""
         variables = outer.below(layer)
         key = layer.identifier, variables.key
         if key not in self.stacks:
@@ -97,7 +97,7 @@ class Layers:
         return InputError(f"{self._file}: too many layers: the limit is {_MAX_LAYERS}")
 
     def _follow(self, stack: Stack) -> None:
-        """Opens what a stack names."""
+        """Opens the layers that a stack names."""
         seen, waiting = {stack.root.identifier}, [stack.root]
         while waiting:
             layer = waiting.pop()
@@ -170,7 +170,7 @@ class Layers:
             self._clips.add(sets)
             place = f"layer {layer.GetDisplayName()}: {path}"
             named = (self._absolute(layer, name, variables) for name in named_clips(sets))
-            meant = (clips_of_template(layer, one, self._folder) for one in templates(sets))
+            meant = (clips_of_template(layer, t, self._folder) for t in templates(sets))
             for file in chain(named, *meant):
                 if file:
                     self._check_clip(file, place, variables)

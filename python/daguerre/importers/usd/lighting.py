@@ -87,13 +87,13 @@ class Lighting:
             make(visit, _part(spots, np.flatnonzero(kept)), lamp)
 
     def glowing(self, visit: Visit, spots: Spots, meshes: Sequence[int], material: int) -> int:
-        """Material of a mesh that is a light itself: its own, with the emission of the light.
+        """Material of a mesh light: the bound material, with the emission of the light.
 
         Args:
             visit: The mesh.
-            spots: Its places.
+            spots: Places of the mesh.
             meshes: All meshes of the prim, one for each of its materials; they share its power.
-            material: Material of one of them.
+            material: Material of one of the meshes.
         """
         lamp = Lamp(visit.prim, self._opened.clock, self._notes)
         if lamp.normalized and len(list(_by_size(spots))) > 1:

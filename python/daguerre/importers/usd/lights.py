@@ -42,8 +42,8 @@ def cone_size(degrees: float) -> tuple[float, float]:
     """Illuminance and divisor of a distant light of 1 cd/m2 with this angular diameter.
 
     Returns:
-        Illuminance of a surface that faces it, lux, and what normalization divides by. A diameter
-        of 0 stands for a parallel beam of 1 lux.
+        Illuminance of a surface that faces the light, lux, and the divisor of normalization. A
+        diameter of 0 stands for a parallel beam of 1 lux.
 
     Source: OpenUSD, documentation of UsdLuxLightAPI, normalize.
     """
@@ -86,7 +86,7 @@ class Lamp:
         return found
 
     def still(self, name: str) -> float:
-        """A number that does not change over time, or that of the scene's time, with a note."""
+        """A number, constant over time, or with a note as at the scene's time."""
         attribute = self.prim.GetAttribute(name)
         if self._clock.codes(attribute):
             self._notes.add(
@@ -159,7 +159,7 @@ class Lamp:
 
 
 def _note_the_rest(api: UsdLux.LightAPI, notes: Notes) -> None:
-    """Notes what a light has that is left out."""
+    """Notes parts of a light that are left out."""
     prim = api.GetPrim()
     if any(map(_is_selective, (api.GetLightLinkCollectionAPI(), api.GetShadowLinkCollectionAPI()))):
         notes.add("light linking is ignored: a light that is linked to some prims lights all")

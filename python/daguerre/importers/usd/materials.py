@@ -104,7 +104,7 @@ class Materials:
 
         Args:
             color: Constant colour, linear Rec.709; None: the colours of the mesh (``colors``).
-            opacity: Constant opacity; a list: that of the mesh (``colors``, fourth channel).
+            opacity: Constant opacity; a list: the mesh's (``colors``, fourth channel).
         """
         r, g, b = (1.0,) * 3 if color is None else (min(max(float(c), 0.0), 1.0) for c in color)
         varies = opacity is not None and not isinstance(opacity, float | int)

@@ -127,12 +127,12 @@ class Meshes:
         return self._made[key]
 
     def _shape_of(self, source: str, prim: object, read: Callable[[], Points]) -> Shape | None:
-        """Shape of a prim; the last one is kept, as parts of a prim follow each other.
+        """Shape of a prim; the last shape is cached, as parts of a prim follow each other.
 
-        One that is made again, for another choice later on, has no new notes.
+        A shape that is made again later, for another choice, adds no new notes.
         """
         if self._last is None or self._last[0] != source:
-            self._last = None  # before the next one takes memory
+            self._last = None  # before the next shape takes memory
             again = source in self._points
             points = self._points[source] if again else read()
             self._points[source] = points
@@ -158,7 +158,7 @@ class Meshes:
         return Shape(prim, points, surface, flipped, self._begun(surface, here), rest)
 
     def _begun(self, surface: Surface, points: Array) -> Future[tuple[Array, Array | None]]:
-        """Points of a surface; those of a smooth one are found while its values are."""
+        """Points of a surface; points of a smooth surface are computed in a thread."""
         if surface.smooth:
             return self._pool.submit(_quiet, surface, points)
         done: Future[tuple[Array, Array | None]] = Future()
@@ -182,7 +182,7 @@ class Meshes:
             triangles = triangles[drawn[polygons]]
         first, index = weld(surface.vertices, *values.values())
         indices = index.astype(np.uint32)[triangles]
-        if drawn is not None:  # else each corner is that of some triangle
+        if drawn is not None:  # else triangles use all corners
             indices, used = _packed(indices, len(first))
             first = first[used]
         if shape.flipped:
@@ -298,7 +298,7 @@ def _now(points: Array | Dynamic, clock: Clock) -> Array:
 
 
 def uv_names(wanted: Sequence[str], prim: object) -> tuple[str, ...]:
-    """Primvars of texture coordinates: those that a material reads, or a usual one."""
+    """Primvars of texture coordinates: primvars that a material reads, or the first usual name."""
     if wanted:
         return tuple(wanted[:2])
     api = UsdGeom.PrimvarsAPI(prim)

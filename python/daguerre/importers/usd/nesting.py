@@ -1,4 +1,4 @@
-"""Counts what point instancers show, copies of copies too, before any copy is made."""
+"""Counts the copies of point instancers, nested copies too, before any copy is made."""
 
 from __future__ import annotations
 

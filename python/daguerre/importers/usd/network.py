@@ -42,7 +42,7 @@ _VECTORS = (
 
 
 class Clock(Protocol):
-    """Time of a stage; :mod:`daguerre.importers.usd.values` has one."""
+    """Time of a stage, as in :mod:`daguerre.importers.usd.values`."""
 
     def value(self, attribute: object) -> Any:
         """Value of an attribute: a constant, or keys over time."""
@@ -82,9 +82,9 @@ class Networks:
                 raise InputError(f"{name}: too many shading nodes: the limit is {MAX_NODES}")
             nodes[name] = self._node(shader)
             stage = shader.GetPrim().GetStage()
-            for one in nodes[name].inputs.values():
-                if isinstance(one, Link) and one.node not in nodes:
-                    waiting.append(UsdShade.Shader(stage.GetPrimAtPath(one.node)))
+            for value in nodes[name].inputs.values():
+                if isinstance(value, Link) and value.node not in nodes:
+                    waiting.append(UsdShade.Shader(stage.GetPrimAtPath(value.node)))
         other = self._terminal(material, "displacement")
         # A preview surface has an input for it, which its reader looks at.
         displaced = other is not None and other.GetPath() != surface.GetPath()
@@ -93,7 +93,7 @@ class Networks:
     def _terminal(self, material: UsdShade.Material, name: str) -> UsdShade.Shader | None:
         """Shader of an output of a material.
 
-        It is that of the preferred render context, among those that are supported if there are.
+        Supported shaders come first, then the order of render contexts.
         """
         first = None
         for context in _CONTEXTS:
@@ -115,14 +115,14 @@ class Networks:
         outputs = shader.GetOutputs()
         kind_of = _TYPES.get(str(outputs[0].GetTypeName()), "") if outputs else ""
         inputs: dict[str, Constant | Link] = {}
-        for one in shader.GetInputs():
-            found = self._source(one.GetAttr())
+        for given in shader.GetInputs():
+            found = self._source(given.GetAttr())
             if found is not None:
-                inputs[str(one.GetBaseName())] = found
+                inputs[str(given.GetBaseName())] = found
         return Node(self._kind_of(prim), kind_of, inputs, str(prim.GetPath()))
 
     def _kind_of(self, prim: Usd.Prim) -> str:
-        """Kind of a shader; of one in another language, such as MDL, its name there."""
+        """Kind of a shader; for another language, such as MDL, its name there."""
         identifier = prim.GetAttribute("info:id").Get()
         if identifier:
             return self._kind(str(identifier))
@@ -217,7 +217,7 @@ def _absolute(attribute: Usd.Attribute, value: Sdf.AssetPath) -> str:
 
 
 def _space_of_prim(attribute: Usd.Attribute) -> str:
-    """Colour space that ``colorSpace:name`` gives a prim or the nearest around it that has one."""
+    """Colour space from ``colorSpace:name`` of a prim, or of the nearest ancestor that has it."""
     prim = attribute.GetPrim()
     while prim and not prim.IsPseudoRoot():
         found = prim.GetAttribute("colorSpace:name")

@@ -2,7 +2,7 @@
 
 ``opencvPinhole`` and ``opencvFisheye`` have OpenCV's coefficients. ``ftheta`` gives the angle of a
 radius in pixels, k0 + k1 r + k2 r^2 + ...; ``kannalaBrandtK3`` and ``radTanThinPrism`` the radius
-of an angle, f (a + k0 a^3 + k1 a^5 + ...), without saying f: it is that of ``focalLength`` on
+of an angle, f (a + k0 a^3 + k1 a^5 + ...), without stating f: f is ``focalLength`` on
 ``horizontalAperture``. Older files have ``cameraProjectionType``, and coefficients that share
 names.
 
@@ -48,14 +48,14 @@ def read_distortion(read: Checked) -> Any:
             f"the lens distortion {model.name} of a camera leaves {', '.join(absent)} to "
             "NVIDIA's schema"
         )
-    one = _Distortion(read, model)
-    codes = one.codes()
+    distortion = _Distortion(read, model)
+    codes = distortion.codes()
     if len(codes) < 2:
-        made = one.at(read.stage.clock.code)
+        made = distortion.at(read.stage.clock.code)
         _notes(read, model, made)
         return made
     clock = read.stage.clock
-    pairs = [(clock.seconds(code), one.at(Usd.TimeCode(code))) for code in codes]
+    pairs = [(clock.seconds(code), distortion.at(Usd.TimeCode(code))) for code in codes]
     _notes(read, model, pairs[0][1])
     return keys(pairs, "step" if clock.holds else "linear")
 
@@ -161,7 +161,7 @@ def _trimmed(values: list[float]) -> tuple[float, ...]:
 
 
 def _notes(read: Checked, model: OmniModel, made: Projection) -> None:
-    """Notes what of a lens distortion is not drawn, or has no definition."""
+    """Notes terms of a lens distortion that are not drawn, or have no definition."""
     if model.name == "ftheta" and read.now(model.terms[0]):
         read.notes.add(f"{model.terms[0]} of a camera is ignored")
     if model.name in ("kannalaBrandtK3", "radTanThinPrism"):

@@ -9,7 +9,7 @@ from daguerre.lenses import Lens, load
 
 
 def focal_mm(camera: Camera) -> float:
-    """Focal length, mm; of a prescription the one that it has."""
+    """Focal length, mm; for a prescription the lens's."""
     if camera.projection is not None:
         pair = camera.projection.film(camera.sensor_size[0])["focal_mm"]
         return float(sum(pair) / 2)

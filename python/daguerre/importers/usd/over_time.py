@@ -24,7 +24,7 @@ _DEEPEST = 12
 #: Time samples of a value.
 _MOST = 50_000
 
-#: Difference of a value in the middle of two others from what lies between them.
+#: Error of linear interpolation: from two values to a value in their middle.
 Miss = Callable[[Any, Any, Any], float]
 
 
@@ -35,8 +35,8 @@ def sample_times(value: Dynamic, span: tuple[float, float] | None, miss: Miss) -
 
     Args:
         value: The value.
-        span: Begin and end, s; None: those of its keys.
-        miss: Tells how wrong the middle of an interval is.
+        span: Begin and end, s; None: the first and last key.
+        miss: Error of linear interpolation in the middle of an interval.
 
     Raises:
         UsageError: The value has no end, and no span was given; or it needs too many samples.

@@ -1,4 +1,4 @@
-"""Lists the files of ``.usdz`` packages as USD finds them, and checks that they are what they say.
+"""Lists the files of ``.usdz`` packages as USD finds them, and checks the packages.
 
 USD reads the head of each file in turn and ignores the directory at the end; other readers use that
 directory. A package is refused unless both agree and nothing is compressed or encrypted, as the

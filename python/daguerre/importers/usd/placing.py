@@ -29,8 +29,8 @@ class Spots:
 
     Attributes:
         still: Matrices at the scene's time, shape (N, 4, 4).
-        moving: The same over time, one for each; None: they rest.
-        name: Node of the copies; empty: the prim's own.
+        moving: The same over time, for each copy; None: constant.
+        name: Node of the copies; empty: the prim's node.
     """
 
     still: Array
@@ -41,7 +41,7 @@ class Spots:
         return len(self.still)
 
 
-def one(world: Matrix | Transform, time: float) -> Spots:
+def single(world: Matrix | Transform, time: float) -> Spots:
     """The place of a prim that is drawn once."""
     still = np.asarray(value_at(world, time), np.float64)[None]
     return Spots(still, [world] if isinstance(world, Transform) else None)

@@ -68,7 +68,7 @@ def read_points(schema: UsdGeom.PointBased, clock: Clock, notes: Notes) -> Array
 
 
 def _ballistic(schema: UsdGeom.PointBased, clock: Clock) -> Ballistic | None:
-    """Points along velocities, which count if their samples are those of the points."""
+    """Points along velocities, if velocities and points have the same sample times."""
     points, velocities = schema.GetPointsAttr(), schema.GetVelocitiesAttr()
     codes = clock.codes(points, single=True)
     if not codes or codes != clock.codes(velocities, single=True):
@@ -79,24 +79,24 @@ def _ballistic(schema: UsdGeom.PointBased, clock: Clock) -> Ballistic | None:
     slower = schema.GetAccelerationsAttr()
     slows = clock.codes(slower, single=True) == codes
     times, kept = np.array([clock.seconds(code) for code in codes]), clock.around(codes)
-    if len({*counts}) > 1:  # points come and go: those of one sample fly
+    if len({*counts}) > 1:  # points come and go: the points of one sample fly
         i = max(int(np.searchsorted(times, clock.time, side="right")) - 1, 0)
         codes, counts, times = codes[i : i + 1], counts[i : i + 1], times[i : i + 1]
         kept = slice(0, 1)
     attributes = [points, velocities]
     if slows and _counts(slower, codes) == counts:
         attributes.append(slower)
-    made = [tuple(_samples(one, codes[kept], clock)) for one in attributes]
+    made = [tuple(_samples(given, codes[kept], clock)) for given in attributes]
     return Ballistic(times[kept], made[0], made[1], made[2] if len(made) > 2 else None)
 
 
 def _counts(attribute: Usd.Attribute, codes: list[float]) -> list[int]:
-    """Number of points of each sample; USD does not copy the points of large ones."""
+    """Number of points of each sample; USD does not copy large samples."""
     return [_count(attribute.Get(Usd.TimeCode(code))) for code in codes]
 
 
 def _count(value: Any) -> int:
-    """Number of points: an attribute of another type holds none, but a number, or numbers."""
+    """Number of points: 0 if an attribute has another type, such as a number or numbers."""
     if not hasattr(value, "__len__") or not len(value) or isinstance(value[0], int | float):
         return 0
     return len(value)

@@ -1,4 +1,4 @@
-"""Walks the prims of a stage, parents before children, with what children inherit."""
+"""Walks the prims of a stage, parents before children, with the values that children inherit."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ PURPOSES = ("default", "render", "proxy", "guide")
 
 @dataclass(frozen=True, eq=False)
 class Visit:
-    """A prim and what it inherits.
+    """A prim and the values that it inherits.
 
     Attributes:
         prim: The prim.
         world: Scene from local, constant or over time.
         shown: Visibility, constant or over time.
-        drawn: Whether its purpose is drawn.
-        depth: Number of its ancestors.
-        purpose: Its purpose, own or inherited.
+        drawn: Whether the prim's purpose is drawn.
+        depth: Number of ancestors.
+        purpose: Purpose, authored or inherited.
     """
 
     prim: Usd.Prim
@@ -56,11 +56,11 @@ class Visit:
 
     @cached_property
     def source(self) -> str:
-        """Text that prims share whose content is the same.
+        """Key that prims with the same content share.
 
-        That is the prototype of instances, and what the prim is composed of: files that are
-        referenced several times are read once. Primvars from above may differ, so a prim that
-        inherits some stands for itself.
+        The key is the prototype of an instance, and the specs that compose the prim: files that
+        are referenced several times are read once. Inherited primvars may differ, so the key of a
+        prim that inherits primvars is its path.
         """
         prim = self.prim.GetPrimInPrototype() if self.prim.IsInstanceProxy() else self.prim
         parent = prim.GetParent()
@@ -90,7 +90,7 @@ class Walk:
         self._count = 0
 
     def below(self, top: Usd.Prim, world: Matrix | Transform) -> Iterator[Visit]:
-        """Visits the prims below one, without that one.
+        """Visits the descendants of a prim.
 
         Prims below a point instancer are its prototypes and are not visited.
         """
@@ -99,7 +99,7 @@ class Walk:
     def whole(
         self, top: Usd.Prim, world: Matrix | Transform, shown: bool | Shown = True
     ) -> Iterator[Visit]:
-        """Visits a prim and those below it; the prim keeps its own transform."""
+        """Visits a prim and its descendants; the prim keeps its transform."""
         visit = replace(self._child(Visit(top, world, shown, True, 0), top), depth=0)
         yield visit
         if not top.IsA(UsdGeom.PointInstancer):

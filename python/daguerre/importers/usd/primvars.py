@@ -53,5 +53,5 @@ def as_rows(value: object, columns: int) -> Array | None:
 
 
 def note_length(name: str, notes: Notes) -> None:
-    """Notes a primvar whose number of values does not fit its mesh."""
+    """Notes a primvar with a wrong number of values for its mesh."""
     notes.add(f"primvar {name[:40]!r} has the wrong number of values for its mesh and is left out")

@@ -1,7 +1,7 @@
 """Reads stages of OpenUSD: joins stage, prims, meshes, materials, lights and cameras.
 
-Start reading here; other modules of this folder read one kind of prim each. Any fault in a file
-gives one ``InputError`` with file, prim, what was wanted and what was got.
+Start reading here; each other module of this folder reads one kind of prim. A fault in a file
+raises an ``InputError`` with the file, the prim, the wanted value and the value found.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from .lights import is_light
 from .materials import Materials
 from .meshes import Meshes
 from .nesting import Totals
-from .placing import Placing, Spots, one, times
+from .placing import Placing, Spots, single, times
 from .points import read_points
 from .prims import PURPOSES, Visit, Walk
 from .shapes import SIZES, is_solid, solid_of
@@ -191,16 +191,16 @@ class _Reader:
         self.scene.add_node(visit.name, where, motion=motion)
         if visit.shown is not False and visit.drawn:
             with typed(self._opened.file, visit.path):
-                self._draw(visit, one(self._posed(visit, worlds), self.scene.time))
+                self._draw(visit, single(self._posed(visit, worlds), self.scene.time))
 
     def _posed(self, visit: Visit, worlds: Worlds) -> Matrix | Transform:
-        """Space of a prim's points: that of the skeleton that moves them, or its own."""
+        """World from a prim's points: the skeleton's transform if skinned, else the prim's."""
         skeleton = self._skeletons.skeleton_of(visit.prim)
         own = visit.world
         return own if skeleton is None else worlds.get(str(skeleton.GetPath()), own)
 
     def _draw(self, visit: Visit, spots: Spots) -> None:
-        """Draws what a prim itself shows, at its places."""
+        """Draws a prim, without its children, at its places."""
         prim = visit.prim
         if is_light(prim) and not prim.IsA(UsdGeom.Gprim):
             self._lighting.add(visit, spots)

@@ -1,4 +1,4 @@
-"""Reads rolling shutters: those of NVIDIA's cameras, and our own attributes of the same names.
+"""Reads rolling shutters: NVIDIA's camera attributes, and our attributes of the same names.
 
 Times are rational seconds, (numerator, denominator); ours may also be plain seconds.
 

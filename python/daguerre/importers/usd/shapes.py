@@ -1,7 +1,7 @@
 """Meshes of USD's solids: cube, sphere, cylinder, cone, capsule and plane.
 
-Round shapes are made of 64 facets around whose corners lie on the surface; the largest gap to it is
-0.12 % of the radius, and 0.24 % for spheres. Normals are those of the exact surface. USD gives
+Round shapes have 64 facets around, with corners on the surface; the largest gap to it is
+0.12 % of the radius, and 0.24 % for spheres. Normals are exact. USD gives
 solids no texture coordinates; here u runs around the axis, v along it, and faces show an image
 upright.
 
@@ -95,7 +95,7 @@ def _plane(sizes: _Sizes) -> ShapeMesh | None:
     triangles = np.array([(0, 1, 2), (0, 2, 3)])
     if axis in "XY":  # x cross z is -y, z cross y is -x
         triangles = triangles[:, ::-1]
-    # An image is upright for an observer on the axis whose up is y; for axis Y, -z.
+    # An image is upright for an observer on the axis with y up; for axis Y, with -z up.
     upright = {"X": (-1, -1), "Y": (1, 1), "Z": (1, -1)}[axis]
     return with_area(positions, normals, corners * upright + 0.5, triangles)
 
@@ -116,7 +116,7 @@ def _capsule(sizes: _Sizes) -> ShapeMesh | None:
 def _hull(radii: tuple[float, float], height: float, axis: str) -> ShapeMesh | None:
     """Hull of two balls, the second one higher on the axis by ``height``.
 
-    Its side touches both at the latitude whose sine is the difference of radii over the height.
+    Its side touches both at a latitude: its sine is the difference of radii over the height.
     """
     slope = radii[0] - radii[1]
     sine = min(max(slope / height, -1.0), 1.0) if height > 0 else float(np.sign(slope))
@@ -132,7 +132,7 @@ def _hull(radii: tuple[float, float], height: float, axis: str) -> ShapeMesh | N
 
 
 def _latitudes(low: float, high: float) -> Array:
-    """Latitudes of rings; a single one, of no size, where the other ball covers this one."""
+    """Latitudes of rings; a single ring, of no height, where the other ball covers this ball."""
     return np.linspace(low, high, math.ceil(_ACROSS * (high - low) / math.pi) + 1)
 
 

@@ -54,7 +54,7 @@ class Skeletons:
                 self._queries[str(target.GetPrim().GetPath())] = (target, skeleton)
 
     def skeleton_of(self, prim: Usd.Prim) -> Usd.Prim | None:
-        """Skeleton that moves a mesh, whose space its points are in; or None."""
+        """Skeleton that moves a mesh, with the space of the mesh's points; or None."""
         found = self._queries.get(str(prim.GetPath()))
         return found[1] if found is not None and found[0].HasJointInfluences() else None
 
@@ -200,7 +200,7 @@ def _checked(numbers: NDArray[np.int64], joints: int, where: str) -> NDArray[np.
 
 
 def _shared(prim: Usd.Prim) -> str:
-    """Path of a prim, or of the one that all instances share."""
+    """Path of a prim, or of the prototype that all instances share."""
     return str((prim.GetPrimInPrototype() if prim.IsInstanceProxy() else prim).GetPath())
 
 

@@ -72,10 +72,10 @@ def usd_errors(file: str) -> Iterator[None]:
 
 @contextmanager
 def typed(file: str, place: str) -> Iterator[None]:
-    """Turns what a value of another type than its schema's leads to into ``InputError``."""
+    """Turns errors from values of other types than the schema's into ``InputError``."""
     try:
         yield
-    except (InputError, UsageError):  # these are values' errors, too
+    except (InputError, UsageError):  # subclasses of ValueError
         raise
     except (TypeError, ValueError, AttributeError) as error:
         raise InputError(
@@ -136,7 +136,7 @@ def open_stage(
     check_count(layers.root, file)
     stage = Usd.Stage.Open(layers.root.root, Usd.Stage.LoadAll)
     _select(stage, file, list(variants))
-    for used in stage.GetUsedLayers():  # those of value clips, too
+    for used in stage.GetUsedLayers():  # including layers of value clips
         if used.realPath:
             assets.check("layer", used.realPath)
     _note_missing(stage, notes)

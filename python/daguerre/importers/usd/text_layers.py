@@ -19,10 +19,10 @@ from daguerre.errors import InputError
 DEEPEST = 1000
 #: Bytes that are counted at once.
 _PIECE = 1 << 20
-#: Strings, files, paths and comments. One without its end reaches as far as the parser looks for
-#: it; no part is read twice, so that the time stays linear.
+#: Strings, files, paths and comments. A lexeme without its end reaches as far as the parser looks
+#: for the end; no part is read twice, so that the time stays linear.
 _LEXEME = re.compile(
-    rb"""["'@<\#/](?:  # one class of first bytes is searched for fastest
+    rb"""["'@<\#/](?:  # a single class of first bytes is fastest
     (?<=") (?: "" (?: [^"\\]++ | \\. | "(?!"") )*+ (?: "{3} | \Z )
              | (?: [^"\\\r\n]++ | \\[^\r\n] )*+ "? )
   | (?<=') (?: '' (?: [^'\\]++ | \\. | '(?!'') )*+ (?: '{3} | \Z )

@@ -58,7 +58,7 @@ def position(world: Matrix | Transform, time: float) -> Matrix:
 
 
 def local(prim: Usd.Prim, clock: Clock, notes: Notes) -> tuple[list[Operation], bool]:
-    """Operations of a prim, the outermost first, and whether they replace those of its parents.
+    """Operations of a prim, the outermost first, and whether they reset the parents' transforms.
 
     Args:
         prim: The prim.
@@ -113,10 +113,10 @@ class _Numbers:
         """
         made = plain(value)
         numbers = made if isinstance(made, tuple) else (made,)
-        if len(numbers) != self.count or not all(isinstance(one, int | float) for one in numbers):
+        if len(numbers) != self.count or not all(isinstance(n, int | float) for n in numbers):
             wanted = f"{self.count} numbers" if self.count > 1 else "a number"
             raise InputError(f"{self.where}: wanted {wanted}, got {short(str(value))}")
-        if not all(math.isfinite(one) for one in numbers):
+        if not all(math.isfinite(number) for number in numbers):
             raise InputError(f"{self.where}: wanted finite numbers, got NaN or infinity")
         found: float | tuple[float, ...] = made
         return found
@@ -132,7 +132,7 @@ def _check(made: Operation, where: str, time: float) -> None:
 
 
 class _Affine:
-    """Converts matrices of USD to affine ones.
+    """Converts matrices of USD to affine matrices.
 
     USD multiplies homogeneous coordinates and divides by the last one, so 0, 0, 0, w in the last
     column is a division by w. A perspective is dropped; the origin keeps its place.
@@ -140,7 +140,7 @@ class _Affine:
     Source: OpenUSD, GfMatrix4d::Transform, and the shaders of Storm. (HdEmbree ignores the column.)
 
     Attributes:
-        changed: Whether one was not affine.
+        changed: Whether a matrix was not affine.
     """
 
     def __init__(self, where: str) -> None:

@@ -2,7 +2,7 @@
 
 USD interpolates time samples linearly, or holds them if the type or the stage asks for it, and
 keeps the first and the last value outside of them: the law of :func:`daguerre.keys`. Splines are
-sampled. Where a sample is blocked, USD has no value; here the one before goes on.
+sampled. Where a sample is blocked, USD has no value; here the previous value goes on.
 """
 
 from __future__ import annotations
@@ -49,12 +49,12 @@ def plain(value: Any) -> Any:
 
 @dataclass
 class Moments:
-    """The times that will be drawn: arrays over time need no samples but those around them.
+    """The times that will be drawn: arrays over time need only samples around them.
 
     Attributes:
         begin: Begin, s.
         end: End, s.
-        left_out: Whether some samples were.
+        left_out: Whether samples were left out.
     """
 
     begin: float
@@ -62,7 +62,7 @@ class Moments:
     left_out: bool = False
 
     def part(self, times: list[float]) -> slice:
-        """Those of some rising times, s, that hold the moments between them; two if there are."""
+        """Part of increasing times, s, that encloses the moments; two times, if there are two."""
         first = max(bisect_right(times, self.begin) - 1, 0)
         last = min(bisect_right(times, self.end) + 1, len(times))
         if last - first < 2:
@@ -80,9 +80,9 @@ class Clock:
         rate: Time codes per second.
         time: Scene time, s.
         holds: Whether the stage holds values between samples.
-        moments: Times that will be drawn; None: any may be.
-        borrows: Whether large arrays may stay in USD's memory, which may be that of a file: in a
-            helper process, which sends them at once to one that checks them.
+        moments: Times that will be drawn; None: any time.
+        borrows: Whether large arrays may stay in USD's memory, possibly a mapped file: in a helper
+            process, which sends them at once to a process that checks them.
     """
 
     file: str
@@ -134,10 +134,10 @@ class Clock:
 
         Args:
             attribute: The attribute.
-            single: Whether a single sample counts, as one with a velocity does.
+            single: Whether a single sample counts, as with velocities.
 
         Raises:
-            InputError: There are too many, or one is not finite.
+            InputError: There are too many time codes, or a code is not finite.
         """
         if not attribute or not (single or attribute.ValueMightBeTimeVarying()):
             return []
@@ -151,7 +151,7 @@ class Clock:
         return found
 
     def around(self, codes: list[float]) -> slice:
-        """Those of the time codes of an array over time that the moments need."""
+        """Part of the time codes of an array that the moments need."""
         if self.moments is None:
             return slice(0, len(codes))
         return self.moments.part([self.seconds(code) for code in codes])
@@ -197,7 +197,7 @@ class Clock:
 
 
 def _with_values(attribute: Usd.Attribute, codes: list[float], kept: slice) -> slice:
-    """Widens a part of the samples until its ends are not blocked, nor all but one."""
+    """Widens a part of the samples until its ends, and more than one sample, are not blocked."""
 
     def has(i: int) -> bool:
         return attribute.Get(codes[i]) is not None
@@ -213,7 +213,7 @@ def _with_values(attribute: Usd.Attribute, codes: list[float], kept: slice) -> s
 
 
 def _rest(attribute: Usd.Attribute, codes: list[float], kept: slice) -> Iterator[Any]:
-    """Values of the samples outside of a part, one by one."""
+    """Iterates over values of the samples outside of a part."""
     for code in (*codes[: kept.start], *codes[kept.stop :]):
         yield attribute.Get(code)
 

@@ -31,7 +31,7 @@ _SECONDS_PER_BYTE, _MEMORY_PER_BYTE = 1e-6, 200.0
 _SECONDS_PER_PIXEL, _MEMORY_PER_PIXEL = 4e-8, 2.0
 #: Most bytes of decoded pictures that count, as of ``shading.images``.
 _MOST_PIXELS = 8 << 30
-#: Least memory of a helper, and the share of what is left that it may take.
+#: Least memory of a helper, bytes, and its largest share of the memory left.
 _LEAST, _SHARE = 3e8, 0.9
 _helper = Helper()
 

@@ -16,10 +16,10 @@ def of_nanovdb(path: str | os.PathLike[str], grid: str = "") -> DensityGrid:
 
     Args:
         path: The file.
-        grid: Name of the grid. Default: the first one.
+        grid: Name of the grid. Default: the first grid.
 
     Raises:
-        InputError: It cannot be read, has no such grid, or its numbers are no densities.
+        InputError: The file cannot be read, has no such grid, or its numbers are no densities.
     """
     return _density(path, nanovdb.read(path, grid))
 
@@ -28,7 +28,7 @@ def of_vol(path: str | os.PathLike[str]) -> DensityGrid:
     """Reads a grid of Mitsuba.
 
     Raises:
-        InputError: It cannot be read, or its numbers are no densities.
+        InputError: The file cannot be read, or its numbers are no densities.
     """
     return _density(path, vol.read(path))
 

@@ -56,18 +56,18 @@ def read(path: str | os.PathLike[str], name: str = "") -> FileGrid:
 
     Args:
         path: The file.
-        name: Name of the grid; default: the first one.
+        name: Name of the grid; default: the first grid.
 
     Raises:
-        InputError: It is not such a file, has no such grid, or the grid is of another kind or
+        InputError: The file is not NanoVDB, has no such grid, or the grid is of another kind or
             packed in a way that cannot be read here.
     """
     file = Path(path)
     data = read_bytes(file)
     entries = list(_entries(data, str(file)))
-    found = next((one for one in entries if name in ("", one.name)), None)
+    found = next((entry for entry in entries if name in ("", entry.name)), None)
     if found is None:
-        names = [one.name for one in entries]
+        names = [entry.name for entry in entries]
         raise InputError(
             f"{file}: wanted a grid {short(name)}, got {', '.join(map(short, names[:8])) or 'none'}"
             f"{suggest(name, names)}"
@@ -141,7 +141,7 @@ def _chunk(packed: Bytes, at: int, where: str) -> tuple[Bytes, int]:
 
 
 def _unblosced(packed: Bytes, size: int, where: str) -> Bytes:
-    """Unpacks by Blosc, of whose chunks each says how large it is."""
+    """Unpacks Blosc data; each chunk states its size."""
     if extras.missing("blosc"):
         raise InputError(
             f"{where}: compressed by BLOSC: {extras.lack('blosc')} (or convert the file with "

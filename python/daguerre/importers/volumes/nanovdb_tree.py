@@ -189,8 +189,8 @@ class _Tree:
 
     def box(self) -> tuple[Integers, Integers]:
         """First active cell along each axis, and one past the last; 0 and 0 if there is none."""
-        found = [(one.corners.min(axis=0), one.corners.max(axis=0) + one.size)
-                 for one in self._blocks]  # fmt: skip
+        found = [(block.corners.min(axis=0), block.corners.max(axis=0) + block.size)
+                 for block in self._blocks]  # fmt: skip
         for rows, corners in self._some_leaves():
             on = np.unpackbits(rows["on"], axis=1, bitorder="little").reshape(-1, 8, 8, 8)
             if on.any():
@@ -198,8 +198,8 @@ class _Tree:
                     (corners[:, axis, None] + np.arange(8))[on.any(axis=others) > 0]
                     for axis, others in enumerate(((2, 3), (1, 3), (1, 2)))
                 ]
-                found.append((np.array([one.min() for one in cells]),
-                              np.array([one.max() + 1 for one in cells])))  # fmt: skip
+                found.append((np.array([corner.min() for corner in cells]),
+                              np.array([corner.max() + 1 for corner in cells])))  # fmt: skip
         if not found:
             return np.zeros(3, np.int64), np.zeros(3, np.int64)
         low, high = zip(*found, strict=True)
@@ -211,8 +211,8 @@ class _Tree:
         size = last - first
         check_room(8 * int(np.prod(size, dtype=object)), self._where)
         values = np.full(size[::-1], background, np.float32)
-        for one in self._blocks:
-            one.fill(values, first)
+        for block in self._blocks:
+            block.fill(values, first)
         leaves = values.reshape([n for count in size[::-1] // 8 for n in (count, 8)])
         for rows, corners in self._some_leaves():
             x, y, z = ((corners - first) // 8).T
@@ -281,7 +281,7 @@ class _Blocks:
     values: NDArray[np.float32]
 
     def fill(self, out: NDArray[np.float32], first: Integers) -> None:
-        """Sets the cells of a grid (Z, Y, X) whose first one is ``first``."""
+        """Sets the cells of a grid (Z, Y, X) with ``first`` as the index of its first cell."""
         for corner, value in zip(self.corners - first, self.values, strict=True):
             x, y, z = (slice(int(begin), int(begin) + self.size) for begin in corner)
             out[z, y, x] = value

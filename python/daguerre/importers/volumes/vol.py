@@ -31,11 +31,11 @@ _MOST_CHANNELS = 64
 def read(path: str | os.PathLike[str]) -> FileGrid:
     """Reads a grid.
 
-    The transform is that of the box in the file, which Mitsuba uses only on request
+    The transform is from the box in the file, which Mitsuba uses only on request
     (``use_grid_bbox``); else the grid fills the unit cube.
 
     Raises:
-        InputError: It is not such a file, or its numbers do not fit together.
+        InputError: The file is not a grid of Mitsuba, or its numbers do not fit together.
     """
     file = Path(path)
     data = read_bytes(file)
