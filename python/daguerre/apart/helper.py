@@ -245,11 +245,11 @@ def _raise(kind: bytes, answer: list[Any], where: str, limits: Limits) -> NoRetu
     if name == "MemoryError":
         raise InputError(f"{where}: cannot read: {too_much(limits)}")
     error = InputError(f"{where}: cannot read: {name}: {text[:200]}")
-    raise error from RuntimeError(_text(answer, 2))  # with the helper's own traceback
+    raise error from RuntimeError(_text(answer, 2))  # with the helper's traceback
 
 
 def _text(answer: list[Any], place: int) -> str:
-    """A text of a message; empty: there is none."""
+    """Text of a message; empty: missing."""
     if place >= len(answer):
         return ""
     return bytes(answer[place])[:_LONGEST].decode("utf-8", "surrogateescape")

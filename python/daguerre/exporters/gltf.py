@@ -152,7 +152,7 @@ class Glb:
         return self.add("meshes", {"name": name, "primitives": primitives})
 
     def add_primitive(self, name: str, **primitive: Any) -> int:
-        """Adds a mesh of one primitive in glTF's own terms; extensions are noted as used."""
+        """Adds a mesh of one primitive in glTF's terms; extensions are noted as used."""
         self.use(*primitive.get("extensions", {}))
         return self.add("meshes", {"name": name, "primitives": [primitive]})
 

@@ -45,7 +45,7 @@ class View:
         aperture_radius_m: Radius of the lens; 0: a pinhole.
         focus_distance_m: Distance from the lens to the plane in focus, along the axis.
         near_m: Distance below which nothing is seen.
-        lens: Prescription that stands behind the thin lens, if its surfaces are spherical.
+        lens: Prescription that the thin lens approximates, if its surfaces are spherical.
         gain: Factor on the light of the picture, by the exposure mode.
     """
 

@@ -68,7 +68,7 @@ def write_bytes(target: Name, data: bytes) -> None:
 
 
 def check_writable(target: Name, *, over: Name | None = None) -> None:
-    """Checks that a file can be written, by making and removing an empty one beside it.
+    """Checks that a file can be written, by making and removing an empty file beside it.
 
     It also removes temporary files of killed writers; the file itself is not touched.
 
@@ -122,7 +122,7 @@ def _resolved(target: Name, over: Name | None) -> Path:
 
 
 def _mode(path: Path) -> int:
-    """Mode of a file, links followed; 0: there is none. A link to itself is an error."""
+    """Mode of a file, links followed; 0: no such file. A link to itself is an error."""
     try:
         return path.stat().st_mode
     except (FileNotFoundError, NotADirectoryError):
@@ -135,18 +135,18 @@ def _temporary(path: Path) -> Path:
 
 def _create(path: Path) -> int:
     """Makes an empty file, which is locked while the returned descriptor is open."""
-    # 0o666 less the umask, as any program; mkstemp would make it unreadable for others.
+    # 0o666 less the umask, as any program; mkstemp would make the file unreadable for other users.
     descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
     with suppress(OSError):  # some network file systems have no locks
         fcntl.flock(descriptor, fcntl.LOCK_EX)
     if os.fstat(descriptor).st_nlink:
         return descriptor
-    os.close(descriptor)  # another writer took it for one that was left, before it was locked
+    os.close(descriptor)  # another writer removed the file as abandoned, before it was locked
     return _create(path)
 
 
 def _drop_left(path: Path) -> None:
-    """Removes temporary files of this target whose writers are dead."""
+    """Removes temporary files of this target that dead writers left."""
     # No regular expression: a long sequence of files would fill the cache of patterns.
     head, tail = f".{path.stem}.", f".tmp{path.suffix}"
     length = len(head) + 8 + len(tail)

@@ -10,7 +10,7 @@ class Budget:
 
     Args:
         limit: Maximum total.
-        what: Name of the things counted.
+        what: Unit of the count, for messages.
     """
 
     def __init__(self, limit: int, what: str) -> None:

@@ -110,7 +110,7 @@ _FORMATS = [
 
 
 def register(made: Format) -> None:
-    """Adds a format to the table, or replaces the one of the same kind and name.
+    """Adds a format to the table, or replaces the format of the same kind and name.
 
     Raises:
         UsageError: Another format of the kind has one of its suffixes.
@@ -213,7 +213,7 @@ def check_written(path: str | os.PathLike[str], known: tuple[str, ...]) -> str:
     """Checks the suffix of an output and returns it in lower case.
 
     Raises:
-        UsageError: It is not one of ``known``; the message lists those.
+        UsageError: The suffix is not in ``known``, which the message lists.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in known:

@@ -48,7 +48,7 @@ _replacing: ContextVar[bool] = ContextVar("files to be replaced", default=False)
 
 @contextmanager
 def command() -> Iterator[None]:
-    """Context of a command; one within another shares its record."""
+    """Context of a command; a nested command shares its record."""
     global _of_command
     before = _of_command
     _of_command = before or _Record()
@@ -82,12 +82,12 @@ def in_place() -> Iterator[None]:
 
 
 def note_read(paths: Iterable[Name]) -> None:
-    """Notes files that are read; those that do not exist are passed over.
+    """Notes files that are read; skips files that do not exist.
 
     Readers in other processes report the names of their files, which belong here, too.
 
     Raises:
-        UsageError: The command is about to write one of them.
+        UsageError: The command is about to write a file that it reads.
     """
     paths = list(paths)
     for path in paths:
@@ -143,7 +143,7 @@ def _record() -> _Record | None:
 
 
 def _file(path: Name) -> _File | None:
-    """Identity of a regular file, links followed; None: there is none."""
+    """Identity of a regular file, links followed; None: no such file."""
     try:
         found = os.stat(path)  # noqa: PTH116
     except (OSError, ValueError):  # ValueError: a name with a zero byte
@@ -152,7 +152,7 @@ def _file(path: Name) -> _File | None:
 
 
 def _still(files: dict[_File, str], file: _File) -> bool:
-    """Whether a file is listed, and its name still stands for it; numbers are used again."""
+    """Whether a file is listed and still has its name; the system reuses numbers of files."""
     return file in files and _file(files[file]) == file
 
 

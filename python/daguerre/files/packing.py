@@ -261,7 +261,7 @@ def name_of(kind: type[Any]) -> str:
 
 
 def _class_of(name: str) -> type[Any] | None:
-    """A class of values of Daguerre by its name; None: there is none."""
+    """A class of values of Daguerre by its name; None: no such class."""
     module, _, rest = name.partition(":")
     if not module.startswith(_OURS):
         return None

@@ -76,7 +76,7 @@ class _Values:
         self._depth = 0
 
     def only(self) -> Any:
-        """Value of the only document; None: there is none."""
+        """Value of the only document; None: no document."""
         next(self._events)  # the start of the stream
         event = next(self._events)
         if isinstance(event, yaml.StreamEndEvent):

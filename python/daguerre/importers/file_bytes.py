@@ -121,7 +121,7 @@ class Inflated:
 
 
 def _gunzipped(data: Bytes, where: str, most: int) -> Iterator[bytes]:
-    """Pieces of gzipped data; several members are one after the other."""
+    """Pieces of gzipped data; several members follow each other."""
     limit, total = min(most, most_unpacked(len(data))), 0
     with gzip.GzipFile(fileobj=io.BytesIO(data.data)) as stream:
         while True:

@@ -107,7 +107,7 @@ def _luminaire(numbers: _Numbers, tilt_factor: float, year: int) -> LightProfile
 
 
 class _Numbers:
-    """Numbers of a file one after the other, wherever their lines end."""
+    """Numbers of a file in sequence, across the ends of lines."""
 
     def __init__(self, file: Path, lines: list[str], first: int) -> None:
         self._file = file
@@ -146,7 +146,7 @@ class _Numbers:
         return number
 
     def count(self, what: str) -> int:
-        """Next number, a whole one of at least 1."""
+        """Next number, an integer of at least 1."""
         number = self.take(what, 1, MAX_VALUES)
         if number != int(number):
             self.fail(what, "a whole number", f"{number:g}")
@@ -157,7 +157,7 @@ class _Numbers:
         return np.array([self.take(what, least) for _ in range(count)])
 
     def rising(self, what: str, count: int, most: float = math.inf) -> FloatArray:
-        """Next ``count`` numbers, each larger than the one before."""
+        """Next ``count`` numbers, increasing."""
         found: list[float] = []
         for _ in range(count):
             number = self.take(what, -math.inf if most == math.inf else 0.0, most)

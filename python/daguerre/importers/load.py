@@ -1,4 +1,4 @@
-"""Loads scene files of any format; a scene without a camera gets one."""
+"""Loads scene files of any format; adds a camera to a scene without cameras."""
 
 from __future__ import annotations
 
@@ -32,23 +32,23 @@ def load(
         path: The file.
         time: Time at which animations are evaluated, s.
         variant: Material variant of glTF, one of ``Scene.variants``; or selections of USD's
-            variants, each as ``/prim:set=name``. Default: those of the file.
-        allow_dirs: Folders, besides the file's own, from which it may read files.
-        strict: Whether content that would be left out, with a note, is an error.
-        **options: Options of the format; None and empty ones count as absent. USD has ``purpose``,
-            names of purposes to draw besides ``default`` (default: ``("render",)``), and
-            ``camera_units``, the unit of focal lengths and apertures in mm (default: a tenth of a
-            scene unit), ``moments``, begin and end of the time that will be drawn, s, motion
-            vectors included (default: any may be; samples of points, joints and copies that it does
-            not need are not read), and ``in_process``: read the stage in this process, which a
-            damaged one can end. glTF has ``animated``: other moments than ``time`` will be drawn,
-            too. pbrt and Mitsuba have ``unit_m``, the length of a unit in m (default: 1), and
-            Mitsuba ``define``, values of the file's parameters by name or as ``name=value``.
+            variants, each as ``/prim:set=name``. Default: selections of the file.
+        allow_dirs: Further folders from which the file may read other files.
+        strict: Whether a note on content that is left out is an error.
+        **options: Options of the format; None and empty values count as absent. USD: ``purpose``,
+            names of purposes to draw besides ``default`` (default: ``("render",)``);
+            ``camera_units``, unit of focal lengths and apertures, mm (default: a tenth of a scene
+            unit); ``moments``, begin and end of the time that will be drawn, s, with motion vectors
+            (default: any time; samples of points, joints and copies outside of it are not read);
+            ``in_process``, whether to read the stage in this process, which a damaged stage can
+            end. glTF: ``animated``, whether moments other than ``time`` will be drawn. pbrt and
+            Mitsuba: ``unit_m``, length of a unit, m (default: 1). Mitsuba: ``define``, values of
+            the file's parameters by name or as ``name=value``.
 
     Raises:
         InputError: The file cannot be used; the message names the file and the place in it. Or
             it is ``strict``, and something would be left out.
-        UsageError: The file's format has no such option.
+        UsageError: The file's format lacks an option.
     """
     time = number(time, "time")
     options |= {"variant": variant, "allow_dirs": allow_dirs}

@@ -1,7 +1,7 @@
 """Writes EXIF blocks like a camera: short fractions such as 1/125, names of lens and body.
 
 The block is a small TIFF file: a main directory, whose tag 34665 points to the EXIF directory.
-JPEG (APP1) and PNG (eXIf) embed the block unchanged; TIFF and DNG have the same tags in their own
+JPEG (APP1) and PNG (eXIf) embed the block unchanged; TIFF and DNG have the same tags in their
 directories. Tags, types and units: Exif 3.0 (CIPA DC-008-2023), 4.6.
 """
 

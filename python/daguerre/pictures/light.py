@@ -119,7 +119,7 @@ def checked_light(file: Path, rgb: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _rgb(picture: Picture, file: Path) -> NDArray[Any]:
-    """Selects the colour channels: R, G, B in any position, or one grey."""
+    """Selects the colour channels: R, G, B in any position, or a single grey channel."""
     pixels = picture.pixels
     names = [name.rsplit(".", 1)[-1].upper() for name in picture.names]
     if all(name in names for name in "RGB"):

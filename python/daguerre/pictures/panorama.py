@@ -72,7 +72,7 @@ def _smoothed(image: Picture) -> Picture:
 
 
 def _between(sums: Array, start: float, count: int) -> Array:
-    """Running sums, interpolated, at a start and places one apart."""
+    """Running sums, interpolated, at a start and at steps of 1."""
     first = int(start)
     share = start - first
     return sums[first : first + count] * (1 - share) + sums[first + 1 : first + 1 + count] * share

@@ -43,7 +43,7 @@ def write_picture(
         path: File; its suffix sets the format: JPEG with 8 bits, TIFF with 16 or 8, PNG with 8 or
             16, EXR with linear floats.
         pixels: Values encoded with the curve of ``space``, 0 to 1, or light, shape (H, W, 3).
-        space: Name in ``daguerre.color.spaces.COLOR_SPACES``; the linear ones need EXR.
+        space: Name in ``daguerre.color.spaces.COLOR_SPACES``; linear spaces need EXR.
         metadata: Metadata for EXIF, with OpenEXR's names.
         quality: JPEG quality, 1 to 100.
         bits: Bits per channel; default: 16 for TIFF, else 8.

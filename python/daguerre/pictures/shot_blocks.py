@@ -91,7 +91,7 @@ def _of_png(file: BinaryIO) -> Iterator[tuple[str, bytes]]:
         if chunk.kind == b"eXIf":
             yield "exif", chunk.data
         elif chunk.kind == b"iTXt" and chunk.data.startswith(_PNG_XMP):  # not compressed
-            # Language and translated keyword stand before the text, each with a zero byte.
+            # Language and translated keyword precede the text, each with a zero byte.
             yield "xmp", chunk.data.removeprefix(_PNG_XMP).split(b"\0", 2)[-1]
 
 

@@ -1,4 +1,4 @@
-"""Colours that OpenEXR and Radiance files state: the one door of light into linear Rec.709.
+"""Colours that OpenEXR and Radiance files state: all light is converted to linear Rec.709 here.
 
 Readers of environments, plates, frames, textures and the darkroom's pictures convert here. Data do
 not pass: pictures of irises, point spreads, masks, STMaps, depth, motion and normals keep their
@@ -64,7 +64,7 @@ class Colors:
 
     @property
     def sentence(self) -> str:
-        """Note on the conversion; empty: there is none."""
+        """Note on the conversion; empty: no conversion."""
         if self.is_plain:
             return ""
         adapted = "" if _keeps_white(self.encoding) else "; its white is adapted (Bradford)"
@@ -89,7 +89,7 @@ class Colors:
             in_place: Whether they may be overwritten, which saves memory.
 
         Returns:
-            The same array if nothing is converted, or in place; else a new one.
+            The same array if nothing is converted, or in place; else a new array.
         """
         if self.is_plain:
             return values
@@ -181,7 +181,7 @@ def _of_corners(value: object) -> Encoding:
 
 
 def _alike(one: Encoding, other: Encoding) -> bool:
-    """Whether two statements have the same primaries, to the digits of files; XYZ has one white."""
+    """Whether two statements have the same primaries, and scene white, to the digits of files."""
     same = np.allclose(one.primaries, other.primaries, rtol=0, atol=1e-3)
     return bool(same and np.allclose(one.scene_white, other.scene_white, rtol=0, atol=1e-3))
 

@@ -48,7 +48,7 @@ class TiffImage:
 
 
 def write_tiff(target: Path | IO[bytes], images: list[TiffImage], exposure: Tags) -> None:
-    """Writes images, those after the first as its children, and the EXIF directory.
+    """Writes images, later images as children of the first, and the EXIF directory.
 
     Args:
         target: File, which is replaced, or stream, which is written from its start.

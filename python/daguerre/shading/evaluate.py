@@ -185,7 +185,7 @@ class Evaluator:
         return self.arguments(self._graph.surface)
 
     def arguments(self, name: str) -> Arguments | None:
-        """A node with its inputs, which are evaluated when they are read; None: no such node."""
+        """A node with its inputs, which are evaluated on access; None: no such node."""
         node = self._graph.nodes.get(name)
         return None if node is None else Arguments(node, self._context, _Lazy(self, node))
 

@@ -60,7 +60,7 @@ class Textures:
         name: str,
         key: object = None,
     ) -> int:
-        """Adds pixels to the scene once; ``key`` stands for their content if they are new."""
+        """Adds pixels to the scene once; ``key`` identifies them, by default their ``id``."""
         known = (id(pixels) if key is None else key, srgb, wrap, filter, min_filter)
         if known not in self._textures:
             self._kept.append(pixels)

@@ -65,7 +65,7 @@ def constants(given: Arguments, name: str, default: tuple[float, ...]) -> tuple[
 
 
 def refraction_index(given: Arguments, ior: float) -> float:
-    """Index of refraction that the renderer takes; below 1, the one of equal reflectance."""
+    """Index of refraction that the renderer takes; below 1, the inverse, of equal reflectance."""
     if 0 < ior < 1:
         given.context.notes.add(
             "an index of refraction below 1 is inverted, which reflects the same"

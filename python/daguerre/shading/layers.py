@@ -67,7 +67,7 @@ def with_film(surface: Surface, share: Value, thickness_nm: Value, ior: float) -
 
 
 def opaque_share(given: Arguments, surface: Surface, opacity: Value) -> None:
-    """Reads opacity as the share of surface that is there."""
+    """Reads opacity as the covered share of the surface."""
     numbers = numbers_of(opacity)
     if numbers is not None and all(number >= 1 for number in numbers):
         return

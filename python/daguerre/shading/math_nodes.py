@@ -183,7 +183,7 @@ def normalize(given: Arguments) -> Value:
 
 
 def combine(given: Arguments) -> Value:
-    """Joins the channels of two to four inputs; those that are missing share the rest as 0."""
+    """Joins the channels of two to four inputs; missing inputs fill the rest with 0."""
     names = ("in1", "in2", "in3", "in4")[: int(given.node.kind[-1])]
     parts = [given.given(name) for name in names]
     missing = sum(part is None for part in parts)

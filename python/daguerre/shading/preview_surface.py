@@ -63,7 +63,7 @@ def _is_presence(given: Arguments) -> bool:
 
 
 def _sheet(given: Arguments, surface: Surface, opacity: float) -> None:
-    """Clear sheet with diffuse light: exact for grey colours, in sum for others."""
+    """Clear sheet with diffuse light: exact for grey; for other colours, exact in sum."""
     arithmetic = given.context.math
     clear = (1.0 - opacity,) * 3
     total = arithmetic.add(arithmetic.multiply(surface.base_color, (opacity,)), clear)

@@ -148,7 +148,7 @@ def _image(given: Arguments, uv: Value, plain: Value = (0.0,)) -> Value:
 
 
 def _usd_space(given: Arguments) -> str:
-    """Colour space of a USD texture by its name; empty: none is named."""
+    """Colour space of a USD texture by its name; empty: unnamed."""
     space = given.text("sourceColorSpace", "")
     if not space or space == "auto":
         file = given.node.inputs.get("file")
@@ -182,7 +182,7 @@ def sampled(
         wraps: Wrapping along both.
         filter: Filter of magnification.
         encoding: Encoding that the scene names; None: by the kind of picture. Primaries that the
-            file states count unless the scene names others.
+            file states count unless the scene names a space.
         outside: Values beyond the picture.
         raw: Whether its numbers are no colours.
     """

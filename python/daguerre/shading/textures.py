@@ -139,7 +139,7 @@ class Packer:
 
 
 def top_down(transform: Six) -> Six:
-    """Transform of coordinates from the top left, from one of coordinates from the bottom left."""
+    """Converts a transform of coordinates from the bottom left to coordinates from the top left."""
     a, b, c, d, e, f = transform
     return a, 0.0 - b, b + c, 0.0 - d, e, 1.0 - e - f
 

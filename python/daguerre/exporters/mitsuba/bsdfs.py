@@ -199,7 +199,7 @@ class Bsdfs:
         self._add_roughness(bsdf, surface.rough)
 
     def _add_pane(self, parent: Element, surface: Glass, name: str) -> None:
-        """Adds a sheet; one of our glTF's gets another index (``sheet_ior``)."""
+        """Adds a sheet; a sheet of our glTF material gets another index (``sheet_ior``)."""
         ior = self._index(surface.ior)
         if not surface.rough.smooth:
             self._notes.add("roughness of a thin sheet of glass is left out")

@@ -14,9 +14,9 @@ from daguerre.importers.mitsuba.transforms import TURN
 
 from .scene_xml import Element, add, add_matrix, add_value
 
-#: Distances, m, that stand for none and for infinity.
+#: Clip distances, m, for no near plane and for infinity.
 _NEAR, _FAR, _INFINITY = 1e-3, 1e7, 1e8
-#: Largest distance from a whole number of pixels that is none.
+#: Largest distance from a whole number of pixels that counts as 0, px.
 _WHOLE = 1e-3
 
 

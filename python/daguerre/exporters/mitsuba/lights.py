@@ -128,7 +128,7 @@ class _Beam:
         return min(_MOST_TEXELS, wanted)
 
     def directions(self) -> Array:
-        """Directions of the texels in the lamp's own frame, of any length, shape (N, N, 3)."""
+        """Directions of the texels in the lamp's frame, of any length, shape (N, N, 3)."""
         count = self._count
         x = (2 * (np.arange(count) + 0.5) / count - 1) * math.tan(math.radians(self.outer))
         plane = np.stack([*np.meshgrid(x, x), np.ones((count, count))], axis=-1)

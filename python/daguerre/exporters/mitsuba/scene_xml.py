@@ -113,7 +113,7 @@ class Values:
 def coded(picture: Picture, raw: bool) -> Any:
     """Pixels as a file that Mitsuba decodes to the same values.
 
-    It takes 8 bits for sRGB unless they are raw, so others become floats.
+    Mitsuba takes 8-bit pixels for sRGB unless they are raw, so linear pixels become floats.
     """
     keeps = picture.pixels.dtype == np.uint8 and picture.srgb != raw
     return picture.pixels if keeps else picture.linear

@@ -31,7 +31,7 @@ class Shapes:
         mirroring transform, so the file of such a mesh is in world space.
         """
         look = self._looks[placed.material]
-        self._bsdfs.id_of(placed.material, look)  # stands before its use
+        self._bsdfs.id_of(placed.material, look)  # defined before its use
         if len(placed.transforms) > 1 and not look.emission.present:
             self._add_group(placed)
             return

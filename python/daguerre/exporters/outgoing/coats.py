@@ -48,7 +48,7 @@ def head_on(ior: float) -> float:
 
 
 def sheet_ior(ior: float) -> float:
-    """Index of a sheet with internal reflections that reflects as one interface of ``ior``.
+    """Index of a sheet with internal reflections that reflects like a single interface of ``ior``.
 
     Both at normal incidence: an interface of reflectance R makes a sheet of 2 R / (1 + R).
     """

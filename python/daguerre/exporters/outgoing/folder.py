@@ -52,7 +52,7 @@ class OutgoingFolder:
     def write(
         self, kind: str, suffix: str, content: hashlib._Hash, write: Callable[[Path], None]
     ) -> str:
-        """Writes a file, unless one of this content is there.
+        """Writes a file, unless a file with this content exists.
 
         Args:
             kind: First word of its name, such as ``mesh``.

@@ -19,7 +19,7 @@ from .pictures import BLACK, WHITE, Baker, Color, Colored, Number, Picture, each
 from .surfaces import Blend, Emission, Glass, Lambert, Look, Metal, Plastic, Rough, Surface
 from .texture_sets import uv_set_of
 
-#: Highest reflectance at normal incidence that an index of refraction stands for.
+#: Highest reflectance at normal incidence that is written as an index of refraction.
 MOST_F0 = 0.9
 #: Least share of light that passes over the distance of an absorption.
 _LEAST_SHARE = 1e-6

@@ -118,7 +118,7 @@ class Baker:
         return made if factor == 1 else made.mapped(lambda light: light * np.float32(factor))
 
     def normals(self, slot: TextureSlot | None, scale: float) -> Picture | None:
-        """Normal map of a slot, with its scale in it; None: there is none, or one of no effect."""
+        """Normal map of a slot, with its scale in it; None: no normal map, or no effect."""
         if slot is None or scale == 0:
             return None
         texture = self._textures[slot.texture]

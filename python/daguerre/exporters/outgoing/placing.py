@@ -1,4 +1,4 @@
-"""Placements of meshes: which of them share one mesh, and which stand alone."""
+"""Placements of meshes: groups that share a mesh, and single placements."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ from daguerre.color.spectra import rgb_of_reflectance
 from daguerre.scene.spectrum import Spectrum
 
 Color = tuple[float, float, float]
-#: First and last wavelength of written spectra, nm: others take them to be 0 beyond their samples.
+#: First and last wavelength of written spectra, nm: other renderers assume 0 beyond the samples.
 _FIRST_NM, _LAST_NM = 360.0, 830.0
 #: Wavelengths, nm, at which blue ends and red begins for an index by colour.
 _BLUE_NM, _RED_NM = 490.0, 580.0

@@ -1,7 +1,7 @@
 """Surfaces in terms that pbrt and Mitsuba share, from which both are written.
 
 A value may be a constant or a picture, and a constant colour a spectrum. Roughness is alpha.
-Writers say in a note what their renderer lacks.
+Writers note features that their renderer lacks.
 """
 
 from __future__ import annotations

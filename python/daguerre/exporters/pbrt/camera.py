@@ -15,12 +15,12 @@ from daguerre.exporters.record import LensFile, Outgoing, View
 
 from .text import Text, floats, integer, string
 
-#: Distance, m, that stands for infinity.
+#: Distance, m, for infinity.
 _INFINITY = 1e8
 
 
 def add_camera(text: Text, outgoing: Outgoing, folder: OutgoingFolder, stem: str) -> None:
-    """Adds all that stands before the world.
+    """Adds the directives before the world.
 
     Args:
         text: Text of the file.

@@ -117,7 +117,7 @@ def _at(transform: Array) -> Array:
 
 
 def _axes(transform: Array) -> Array:
-    """Frame of a lamp without scale; a mirrored one stays mirrored."""
+    """Frame of a lamp without scale; a mirrored frame stays mirrored."""
     made = _at(transform)
     made[:3, :3] = transform[:3, :3] / np.linalg.norm(transform[:3, :3], axis=0)
     return made

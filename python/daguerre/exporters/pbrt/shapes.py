@@ -33,7 +33,7 @@ class Shapes:
         look = self._looks[placed.material]
         material = self._materials.name_of(placed.material, look)
         shape = self._shape(placed, look)
-        self._media.names_of(placed.material, look)  # stand before their use
+        self._media.names_of(placed.material, look)  # defined before their use
         if len(placed.transforms) > 1 and not look.emission.present:
             self._add_object(placed, material, shape)
             return

@@ -26,7 +26,7 @@ from .shutter import write_exposure, write_shutter
 from .stage import Output
 
 _ROOT = "World"
-#: Clipping planes, m, for others, which always have some; the default hides the nearest metre.
+#: Clipping planes, m: other programs need them, and USD's default hides the nearest metre.
 _NEAR, _FAR = 1e-3, 1e6
 
 

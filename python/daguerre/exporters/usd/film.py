@@ -13,7 +13,7 @@ from .stage import Output
 
 #: Camera lengths of a stage in metres, mm.
 _TENTH = 100.0
-#: Infinity as others take it, m.
+#: Infinity for other programs, m.
 _FAR = 1e6
 _LENS = ("focal_length", "zoom", "projection", "sensor_size")
 

@@ -35,7 +35,7 @@ def write_projection(output: Output) -> None:
 
 
 def _of(made: Projection) -> OmniModel | None:
-    """Lens distortion of NVIDIA's that is a projection; None: there is none."""
+    """NVIDIA's lens distortion for a projection; None: no equal model."""
     if made.model == "rectilinear" or (made.model == "opencv" and not any(made.parameters[12:])):
         return MODELS[_PINHOLE]
     if made.model in ("equidistant", "kannala_brandt"):

@@ -68,14 +68,14 @@ def _value(row: Plain) -> Any:
 
 
 def _is_told(output: Output, row: Plain) -> bool:
-    """Whether an attribute of ours is needed: others do not say the same already."""
+    """Whether an attribute of ours is needed: standard attributes do not give its value."""
     camera = output.camera
     value, default = getattr(camera, row.field), CAMERA[row.field].default
     if row.field == "focus_distance":
         return value is not None and math.isinf(value)
     if row.field == "shutter_time":
         return False
-    if row.field == "near_clip":  # others need a plane even where nothing is clipped
+    if row.field == "near_clip":  # other programs need a plane even where nothing is clipped
         return bool(value == 0)
     if row.field == "fps":
         return bool(camera.fps != output.rate)

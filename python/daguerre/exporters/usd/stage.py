@@ -58,7 +58,7 @@ class Output:
         return made
 
     def samples(self, *names: str) -> list[float]:
-        """Times at which one of these parameters needs a sample, s; none if all are constant."""
+        """Times at which these parameters need samples, s; none if all are constant."""
         moving = [self.camera.motion[name] for name in names if name in self.camera.motion]
         times = (
             sample_times(_Flat(value), self.times or None, miss_of_numbers) for value in moving
@@ -76,7 +76,7 @@ class Output:
         Args:
             name: Attribute.
             kind: Its type.
-            of: Its value for a camera at one moment; None: leaves it out.
+            of: Value of the attribute for a camera at a moment; None: not written.
             *names: Parameters that it depends on.
         """
         times = self.samples(*names)

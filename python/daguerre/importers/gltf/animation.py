@@ -119,7 +119,7 @@ def _with(holder: Any, way: tuple[str, ...], value: object) -> Any:
 
 def breaks_of(channels: Sequence[Channel], begin: float, end: float) -> FloatArray:
     """Increasing times of the keys inside of (begin, end), s."""
-    tracks = {id(c.track): c.track for c in channels}  # many nodes may share one
+    tracks = {id(c.track): c.track for c in channels}  # many nodes may share a track
     times = [track.breaks(begin, end) for track in tracks.values()]
     if len(times) == 1:
         return times[0]

@@ -154,7 +154,7 @@ def read_camera(item: Item, transform: NDArray[np.float64], notes: Notes) -> Cam
         ours = extras.get("daguerre")
         if ours is not None:
             values |= _known(ours, _EXTRAS, notes, "extras.daguerre")
-    if values.get("lens") in (None, *IDEAL):  # a prescription has its own focal length
+    if values.get("lens") in (None, *IDEAL):  # a prescription sets the focal length
         values.setdefault("focal_length", 0.5 * values["sensor_size"][1] / math.tan(0.5 * yfov))
         low, high = LIMITS["focal_length"]
         if not low <= values["focal_length"] <= high:

@@ -32,7 +32,7 @@ class MeshOverTime(Value):
         triangles: Shape (M, 3), wound for the vertices at the time of reading.
         displacements: Weighted displacements over time.
         shapes: Values of the displacements.
-        skin: Skin that moves the vertices; None: there is none.
+        skin: Skin that moves the vertices; None: no skin.
     """
 
     arrays: Arrays

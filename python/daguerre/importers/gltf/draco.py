@@ -81,7 +81,7 @@ def supply(
 def _decode(data: bytes, extension: Item) -> Any:
     try:
         mesh = import_module("DracoPy").decode(data)
-    except Exception as error:  # several types of its own
+    except Exception as error:  # DracoPy raises several types
         raise InputError(
             f"{extension.file}: {extension.path}: cannot be decoded: {error}"
         ) from None

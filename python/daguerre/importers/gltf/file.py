@@ -36,10 +36,10 @@ class Document:
 
     Attributes:
         root: The JSON object.
-        binary: The BIN chunk of a .glb; None: there is none.
+        binary: The BIN chunk of a .glb; None: no such chunk.
         folder: Folders that URIs may point to.
         trailing: Number of bytes after the stated end of a .glb.
-        packed: The chunk of a .glb that holds a scene of Daguerre as it is; None: there is none.
+        packed: The chunk of a .glb with a packed scene of Daguerre; None: no such chunk.
     """
 
     root: Item
@@ -50,7 +50,7 @@ class Document:
 
 
 def open_document(path: Path, folder: Folder) -> Document:
-    """Reads a .glb or .gltf file; its first bytes tell which.
+    """Reads a .glb or .gltf file; its first bytes decide.
 
     Raises:
         InputError: The file cannot be read, is truncated or is not glTF 2.0.

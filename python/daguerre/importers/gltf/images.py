@@ -72,7 +72,7 @@ class Images:
             return
         from concurrent.futures import ThreadPoolExecutor
 
-        import OpenImageIO  # noqa: F401 (here it costs less than in a thread with its own heap)
+        import OpenImageIO  # noqa: F401 (the import costs more in a thread)
 
         # OpenImageIO releases the interpreter's lock while it decodes.
         with ThreadPoolExecutor(min(8, os.cpu_count() or 1)) as pool:

@@ -50,7 +50,7 @@ def instance_transforms(
 
 
 def _common_count(uses: dict[str, Item], accessors: Accessors) -> int:
-    """Number of instances; one if there are only attributes of applications."""
+    """Number of instances; 1 if there are only application-specific attributes."""
     counts = {name: accessors.count(use) for name, use in uses.items()}
     count = next((counts[name] for name in _COLUMNS if name in counts), 1)
     if count > MAX_INSTANCES:

@@ -42,7 +42,7 @@ def _sheen(sheen: Item | None, textures: Textures, values: dict[str, Any]) -> No
     values["sheen_color"] = unit_color(sheen, "sheenColorFactor", 0.0)
     values["sheen_color_texture"] = textures.slot(sheen, "sheenColorTexture", srgb=True)
     values["sheen_roughness"] = fraction(sheen, "sheenRoughnessFactor", 0.0)
-    # Only alpha is read, which is linear in sRGB textures too; files often share one picture.
+    # Only alpha is read, which is linear in sRGB textures, too; files often share a picture.
     values["sheen_roughness_texture"] = textures.slot(sheen, "sheenRoughnessTexture", srgb=True)
 
 

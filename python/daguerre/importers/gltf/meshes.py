@@ -92,7 +92,7 @@ class _Source:
 
 
 class Meshes:
-    """Reads primitives on demand; equal ones become one mesh of the scene.
+    """Reads primitives on demand; equal primitives share a mesh of the scene.
 
     Args:
         root: The JSON object of the file.

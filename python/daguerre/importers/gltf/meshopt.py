@@ -126,7 +126,7 @@ def _color(raw: NDArray[np.uint8], stride: int) -> NDArray[Any]:
     unsigned, signed = (np.uint8, np.int8) if stride == 4 else (np.uint16, np.int16)
     y, alpha = (raw.view(unsigned).reshape(-1, 4)[:, k].astype(np.int32) for k in (0, 3))
     co, cg = (raw.view(signed).reshape(-1, 4)[:, k].astype(np.int32) for k in (1, 2))
-    # The highest bit of alpha sets the precision: ones up to and including it.
+    # The highest bit of alpha sets the precision: 1 in all bits up to and including it.
     ones = np.left_shift(1, np.frexp(alpha.astype(np.float32))[1]) - 1
     alpha &= ones >> 1
     alpha = (alpha << 1) | (alpha & 1)

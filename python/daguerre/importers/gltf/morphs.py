@@ -31,7 +31,7 @@ _TYPES = {
 
 @dataclass(frozen=True)
 class Displacement:
-    """An accessor of displacements with its weight; equal ones change a mesh equally."""
+    """An accessor of displacements with its weight; equal values change a mesh equally."""
 
     attribute: str
     accessor: int

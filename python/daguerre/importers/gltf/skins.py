@@ -1,6 +1,6 @@
 """Applies skins: vertices follow joints by linear blending of the joints' transforms.
 
-A skinned mesh is in world space; the transform of its own node is ignored.
+A skinned mesh is in world space; the transform of its node is ignored.
 Source: glTF 2.0 specification, chapter 3.7.3.
 """
 
@@ -34,7 +34,7 @@ class SkinOverTime(Value):
     Attributes:
         poses: The nodes of the file.
         joints: Indices of the nodes that are joints.
-        bind: Joint from mesh for each joint, shape (joints, 4, 4), or one for all.
+        bind: Joint from mesh for each joint, shape (joints, 4, 4), or (4, 4) for all.
         still: World from mesh for each joint, if no joint moves.
         influences: Joints and weights of the vertices.
     """

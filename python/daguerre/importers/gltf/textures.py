@@ -81,7 +81,7 @@ class Textures(Value):
         return other
 
     def slot(self, owner: Item | None, key: str, *, srgb: bool) -> TextureSlot | None:
-        """Reads the texture in member ``key`` of a material; None: there is none."""
+        """Reads the texture in member ``key`` of a material; None: no texture."""
         info = None if owner is None else owner.get(key)
         if info is None:
             return None
@@ -109,7 +109,7 @@ class Textures(Value):
         return TextureSlot(self.plans.setdefault(plan, len(self.plans)), uv_set, transform)
 
     def _image_of(self, texture: Item) -> int | None:
-        """Image of a texture: the compressed one if it exists and can be decoded."""
+        """Image of a texture: the compressed image if it exists and can be decoded."""
         plain = texture.get("source")
         for name in _COMPRESSED:
             extension = texture.extension(name)

@@ -1,4 +1,4 @@
-"""A mesh as a file has it."""
+"""A mesh with the polygons of its file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class FileMesh(FixedArrays):
 
     Attributes:
         positions: Shape (N, 3), in the units of the file.
-        corners: Vertex of each corner, one face after the other, shape (C,).
+        corners: Vertex of each corner, face after face, shape (C,).
         sizes: Corners of each face, at least 3, shape (F,); None: all are triangles.
         normals: Shape (N, 3), or None.
         uv: Texture coordinates as the file has them, shape (N, 2), or None.

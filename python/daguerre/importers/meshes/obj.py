@@ -1,4 +1,4 @@
-"""Reads Wavefront OBJ files as one mesh: all their polygons, whatever object or group they are of.
+"""Reads Wavefront OBJ files as one mesh: the polygons of all objects and groups.
 
 Source: Wavefront Technologies, "Object Files (.obj)", appendix B1 of the Advanced Visualizer's
 manual, with its negative indices, which count back from the latest element.
@@ -23,9 +23,9 @@ from .obj_faces import Faces, read_faces
 from .obj_lines import Lines, words_of
 from .text_numbers import NotANumberError, numbers
 
-#: Tables by keyword: numbers wanted, and those that a line must have.
+#: Tables by keyword: numbers wanted, and the least numbers on a line.
 _TABLES = {"v": (3, 3), "vt": (2, 1), "vn": (3, 3)}
-#: Words that say how surfaces look or are named; Mitsuba and others ignore them, too.
+#: Keywords for materials, names and smoothing; Mitsuba ignores them, too.
 _IGNORED = {"o", "g", "s", "usemtl", "mtllib"}
 #: Maximum size of a file, bytes.
 _MOST = 1 << 32

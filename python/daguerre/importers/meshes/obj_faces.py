@@ -91,7 +91,7 @@ class _Reader:
         begins, places = np.flatnonzero(word), np.flatnonzero(number)
         slashes = np.cumsum(slash, dtype=np.int32)
         corner = np.searchsorted(begins, places, side="right") - 1
-        # A slash before the first number counts, too: such a corner has no vertex.
+        # A slash before the first number counts, too: a corner with it has no vertex.
         field = slashes[places] - (slashes[begins] - slash[begins])[corner]
         if len(field) and field.max() > 2:
             self._fail(int(corner[int(np.argmax(field))]), begins, "at most 3 numbers per corner")

@@ -49,7 +49,7 @@ class Lines:
         first, last = self._begins[lines[0]], self._ends[lines[-1]] + 1
         begins, ends = self._begins[lines] - first, self._ends[lines] + 1 - first
         out = self._data[first:last].copy()
-        if len(lines) <= lines[-1] - lines[0]:  # others stand between them
+        if len(lines) <= lines[-1] - lines[0]:  # other lines are between them
             change = np.zeros(len(out) + 1, np.int8)
             change[begins] += 1
             change[ends] -= 1

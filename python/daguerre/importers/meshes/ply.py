@@ -2,7 +2,7 @@
 
 Vertices have positions (``x y z``) and may have normals (``nx ny nz``), texture coordinates and
 colours; faces are lists of vertices, and may have a list of texture coordinates of their corners.
-Names are those that pbrt-v4, Mitsuba 3, MeshLab and Blender write.
+Names of properties follow pbrt-v4, Mitsuba 3, MeshLab and Blender.
 
 Source: G. Turk 1994, "The PLY Polygon File Format"; the documentation of pbrt-v4's ``plymesh`` and
 of Mitsuba 3's ``ply``.

@@ -35,7 +35,7 @@ class Property:
     Attributes:
         name: Its name.
         type: NumPy's code of the type, without byte order.
-        counted: Code of the type of the length of a list; empty for one number.
+        counted: Code of the type of the length of a list; empty for a single number.
     """
 
     name: str
@@ -44,7 +44,7 @@ class Property:
 
     @property
     def largest(self) -> int:
-        """Largest number of a type of whole numbers; 0 for others."""
+        """Largest number of an integer type; 0 for other types."""
         return int(np.iinfo(self.type).max) if self.type[0] in "iu" else 0
 
 
@@ -84,7 +84,7 @@ class Header:
     lines: int
 
     def find(self, name: str) -> Element:
-        """Element of a name that is there."""
+        """Element of a name, which must exist."""
         return next(element for element in self.elements if element.name == name)
 
 
@@ -92,7 +92,7 @@ def read_header(data: Bytes, where: str) -> Header:
     """Reads the header of a file.
 
     Raises:
-        InputError: It is not one of PLY 1.0; the message names the line.
+        InputError: The header is not valid PLY 1.0; the message names the line.
     """
     reader = _Reader(where)
     text = data[:_MOST_BYTES].tobytes()

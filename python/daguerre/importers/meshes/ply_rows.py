@@ -1,6 +1,6 @@
 """Rows of an element of a PLY file as columns.
 
-Rows without lists are an array of records. Rows with lists have sizes of their own: the core
+Rows without lists are an array of records. Rows with lists differ in size: the core
 follows them by the lengths of their lists.
 """
 
@@ -29,7 +29,7 @@ class Lists:
 
     Attributes:
         sizes: Length of each list, shape (F,).
-        values: Their numbers, one list after the other, shape (C,).
+        values: Numbers of the lists, list after list, shape (C,).
     """
 
     sizes: NDArray[np.uint32]

@@ -37,7 +37,7 @@ def read(path: str | os.PathLike[str], index: int = 0) -> FileMesh:
         index: Number of the mesh, from 0.
 
     Raises:
-        InputError: It is not such a file, has no such mesh, or is damaged.
+        InputError: The file is not a serialized mesh, has no mesh of this number, or is damaged.
     """
     file = Path(path)
     data = read_bytes(file)
@@ -63,7 +63,7 @@ def count(path: str | os.PathLike[str]) -> int:
     """Number of meshes in a file.
 
     Raises:
-        InputError: It is not such a file.
+        InputError: The file is not a serialized mesh.
     """
     file = Path(path)
     data = read_bytes(file)

@@ -1,4 +1,4 @@
-"""Materials of Mitsuba: plugins that are surfaces by themselves.
+"""Materials of Mitsuba: plugins that need no other BSDF.
 
 Mitsuba's opaque surfaces are black from behind unless ``twosided`` is around them. Its microfacets
 are Beckmann's by default.
@@ -45,7 +45,7 @@ class Surfaces:
         self.textures, self.notes = textures, notes
 
     def look(self, node: Node) -> Look | None:
-        """Look of a material; None: the plugin is none of those here."""
+        """Look of a material; None: the plugin is not read here."""
         read = _PLUGINS.get(node.plugin)
         return None if read is None else read(self, node)
 

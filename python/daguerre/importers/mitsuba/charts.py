@@ -1,4 +1,4 @@
-"""How texture coordinates lie on a mesh, for normal maps and bump maps."""
+"""Mapping of texture coordinates on a mesh, for normal maps and bump maps."""
 
 from __future__ import annotations
 

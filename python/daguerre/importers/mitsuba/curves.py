@@ -19,7 +19,7 @@ _LEAST = {"bspline": 4, "linear": 2}
 
 
 def add_curves(node: Node, context: Context) -> int | None:
-    """Adds the curves of a shape to the scene, as one mesh; ``to_world`` leaves radii as they are.
+    """Adds the curves of a shape to the scene, as one mesh; ``to_world`` does not scale radii.
 
     Returns:
         Index of the mesh, in the space of the scene; None, and a note: the file is missing.

@@ -100,7 +100,7 @@ class Emitters:
         self._project(node, _slide(picture, scale, half, aspect), widest)
 
     def _picture(self, node: Node, name: str) -> Value | None:
-        """Channels of a texture that is projected; None: there is none."""
+        """Channels of a texture that is projected; None: no texture."""
         found = node.find(name)
         if found is None or not isinstance(found.value, Node) or found.value.plugin in PLUGINS:
             return None

@@ -40,7 +40,7 @@ class Files:
         """Adds a folder of a ``<path>``, which is searched first.
 
         Raises:
-            InputError: There is no such folder, or it may not be read.
+            InputError: The folder does not exist, or may not be read.
         """
         for folder in self._folders:
             found = self._real(folder, name, entry)
@@ -55,7 +55,7 @@ class Files:
         """File of a name.
 
         Raises:
-            InputError: There is no such file, or it may not be read.
+            InputError: The file does not exist, or may not be read.
         """
         found = self.find(name, entry)
         if found is None:

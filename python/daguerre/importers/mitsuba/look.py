@@ -41,7 +41,7 @@ class Look:
     Attributes:
         kind: Kind of the material, unless it is a blend.
         two_sided: Whether the surface is seen from behind, too; otherwise its back is black.
-        opacity: Share of the surface that is there, a factor on a texture.
+        opacity: Covered share of the surface, a factor on a texture.
         opacity_texture: Texture of opacity.
         relief: Normal map or bump map.
         attribute: Attribute of the mesh with colours that multiply the kind's, or empty.
@@ -70,7 +70,7 @@ class Look:
 
         Args:
             relief: The relief.
-            made: Looks made of others, by their id: parts may be shared.
+            made: Results by ``id`` of the original look: parts may be shared.
         """
         if self.blend is None:
             return replace(self, relief=relief)
@@ -84,7 +84,7 @@ class Look:
 
 @dataclass(frozen=True)
 class Chart:
-    """How texture coordinates lie on a mesh in the world.
+    """Mapping of texture coordinates on a mesh in the world.
 
     Attributes:
         right_handed: Whether v runs along normal x u, as on a rectangle; else against it, as in

@@ -208,5 +208,5 @@ def _combined(
 
 
 def _mean(color: Color) -> float:
-    """Value of a grey colour at all wavelengths; of others the mean."""
+    """Value of a grey colour at all wavelengths; of other colours the mean."""
     return sum(color) / 3

@@ -105,7 +105,7 @@ class Node:
         """Number of a property.
 
         Raises:
-            InputError: It is no number, below ``low``, or not ``above`` a bound.
+            InputError: The property is no number, below ``low``, or not ``above`` a bound.
         """
         found = self.find(name)
         if found is None:
@@ -167,7 +167,7 @@ class Node:
         return np.array(found.take(), np.float64)
 
     def transform(self, name: str = "to_world") -> Matrix:
-        """Matrix of a property, shape (4, 4); the identity if there is none."""
+        """Matrix of a property, shape (4, 4); default: the identity."""
         found = self.find(name)
         if found is None:
             return np.eye(4)
@@ -194,7 +194,7 @@ class Node:
         return found
 
     def nested_one(self, *kinds: str) -> Node | None:
-        """The only nested object of some kinds; None: there is none.
+        """The only nested object of some kinds; None: no nested object.
 
         Raises:
             InputError: There are several.

@@ -8,7 +8,7 @@ from .ledger import Entry
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\Z", re.ASCII)
 _SEPARATORS = re.compile(r"[,\s]+")
-#: Most numbers of one attribute.
+#: Most numbers of an attribute.
 MAX_NUMBERS = 1 << 16
 
 
@@ -29,7 +29,7 @@ def number(word: str, entry: Entry) -> float:
 
 
 def numbers(text: str, entry: Entry, *counts: int) -> tuple[float, ...]:
-    """Numbers, as many as one of ``counts``; without counts any.
+    """Numbers; their count is in ``counts``, or any if empty.
 
     Raises:
         InputError: A word is no number, or there are more or fewer.

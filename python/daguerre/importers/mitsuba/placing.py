@@ -109,7 +109,7 @@ class Placing:
         self._scene.add_instance(mesh, material, placed, name=name)
 
     def _mesh(self, node: Node, attribute: str) -> tuple[int, Matrix] | None:
-        """Mesh of a shape, and the transform of its own parameters; None: it is left out."""
+        """Mesh of a shape, and the transform of the shape's parameters; None: left out."""
         key = (id(node), attribute)
         if key not in self._meshes:
             node.use()

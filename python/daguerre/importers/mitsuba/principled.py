@@ -96,7 +96,7 @@ def _made(surface: Surface, textures: Textures, notes: Notes, *, two_sided: bool
 
 
 def _specular(node: Node, surface: Surface) -> None:
-    """Index of refraction, by itself or by the reflectance 0.08 x ``specular``."""
+    """Index of refraction, as authored or from the reflectance 0.08 x ``specular``."""
     if node.has("eta") and node.has("specular"):
         node.fail("set either eta or specular, not both")
     if node.has("eta"):

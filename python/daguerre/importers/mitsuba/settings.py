@@ -15,7 +15,7 @@ from .node import Node, leave_out
 
 #: Integrators that follow light over any number of surfaces.
 _PATHS = ("path", "volpath", "volpathmis", "ptracer", "prb", "prbvolpath", "bdpt", "volpath_simple")
-#: Integrators that wrap another one.
+#: Integrators that wrap another integrator.
 _WRAPPERS = ("moment", "aov", "adaptive", "multichannel")
 #: Reconstruction filters, and the nearest filter here.
 _FILTERS = {

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A mesh and the transform of its own parameters, such as centre and radius."""
+    """A mesh, and the transform of the shape's parameters, such as centre and radius."""
 
     mesh: ShapeMesh
     inner: Array

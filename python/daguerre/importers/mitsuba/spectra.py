@@ -48,7 +48,7 @@ class Spectra:
     """Reads colours and spectra.
 
     Args:
-        read: Reads the file of a name, for an element; None: there is no such file.
+        read: Reads the file of a name, for an element; None: no such file.
         notes: Receives notes on missing files.
     """
 
@@ -99,7 +99,7 @@ class Spectra:
         return sampled([p[0] for p in pairs], [p[1] for p in pairs], entry)
 
     def _of_file(self, file: str, entry: Entry) -> Spectrum:
-        """Pairs of a wavelength and a value, one on each line."""
+        """Pairs of a wavelength and a value, a pair on each line."""
         about = entry.about(file)
         data = self._read(file, entry)
         if data is None:

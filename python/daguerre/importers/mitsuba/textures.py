@@ -262,7 +262,7 @@ def _mapped(node: Node) -> tuple[float, float, float, float, float, float]:
 
 
 def _swapped(value: Value) -> Value:
-    """A checkerboard with its colours exchanged, as Mitsuba 3.9 has it where it wants a number."""
+    """A checkerboard with exchanged colours, as in Mitsuba 3.9's scalar parameters."""
     return tuple(
         replace(c, mapping=replace(c.mapping, transform=_shifted(c.mapping.transform)))
         if isinstance(c, Texel)

@@ -1,4 +1,4 @@
-"""Transforms: products of the steps in a ``<transform>``; each acts after those before it.
+"""Transforms: products of the steps in a ``<transform>``; each acts after the previous steps.
 
 Source: Mitsuba 3, documentation of the scene format, "Transformations".
 """
@@ -155,7 +155,7 @@ def uv_part(matrix: Matrix) -> tuple[float, float, float, float, float, float]:
 
 
 def product(steps: Sequence[tuple[str, Attributes]], entries: Sequence[Entry]) -> Matrix:
-    """Matrix of all steps, each of which acts after those before it.
+    """Matrix of all steps, each acts after the previous steps.
 
     Raises:
         InputError: A step is wrong, or the product is not finite.

@@ -94,7 +94,7 @@ def _srgb(element: Element, entry: Entry) -> tuple[float, ...]:
 
 
 def _spectrum(element: Element, entry: Entry) -> tuple[str, str]:
-    """Text of the value, and name of a file; one of them is empty."""
+    """Text of the value, and name of a file; either is empty."""
     known(element, entry, "name", "value", "filename", "intent")
     value, file = element.get("value"), element.get("filename")
     if (not value) == (not file):

@@ -188,7 +188,7 @@ def _perspective(eye: Eye) -> Seen:
         enlarged = 1.0
         fields["lens"] = "pinhole"
     else:
-        # The size of pbrt's film means nothing here: a larger one keeps f-stops possible.
+        # The size of pbrt's film has no effect: a larger film keeps f-stops possible.
         enlarged = max(1.0, 2 * _FASTEST * 2000 * radius / focal)
         fields |= {"aperture_diameter": 2000 * radius, "focus_distance": _distance(distance, eye)}
     fields["focal_length"] = focal * enlarged

@@ -57,7 +57,7 @@ class Strands:
 
 
 def group_of(made: Made) -> tuple[object, ...]:
-    """Values that strands of one mesh share."""
+    """Values that the strands of a mesh share."""
     state = made.state
     material = state.material if isinstance(state.material, str) else id(state.material)
     return material, state.inside, state.outside, id(state.emission), state.reversed

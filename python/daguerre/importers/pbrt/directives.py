@@ -49,7 +49,7 @@ _ARGUMENTS: dict[str, tuple[int, int, bool]] = {
     "Translate": (0, 3, False),
 }
 NAMES = (*_ARGUMENTS, "Include")
-#: Directives that tell the version: pbrt-v4 has no such names.
+#: Directives that only pbrt-v3 has.
 OF_V3 = ("WorldEnd", "SurfaceIntegrator", "VolumeIntegrator", "Renderer", "TransformBegin")
 _WHAT = {"Texture": ("a name", "a type", "a class")}
 
@@ -63,7 +63,7 @@ class Directive:
         place: Its place.
         strings: Strings after the name; for ``ActiveTransform`` its word.
         numbers: Numbers after them.
-        parameters: Parameters after those.
+        parameters: Parameters after them.
     """
 
     name: str

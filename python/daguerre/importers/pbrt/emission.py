@@ -22,7 +22,7 @@ from .spectra import Color, Spectra, luminance, scaled
 from .state import Made
 
 Array = NDArray[np.float64]
-#: Most groups of triangles with a light of their own; more get the mean.
+#: Most groups of triangles with separate lights; more get the mean.
 _MOST_GROUPS = 32
 
 
@@ -63,7 +63,7 @@ class Emissions:
     def of(
         self, made: Made | None, surface: Surface, world: Array
     ) -> list[tuple[Emission, NDArray[np.bool_] | None]]:
-        """Light of a surface, and of which triangles; None: of all.
+        """Light of a surface, and the triangles that emit it; None: all.
 
         Args:
             made: Directive, or None.

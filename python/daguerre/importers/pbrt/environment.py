@@ -30,7 +30,7 @@ from .state import Made
 Array = NDArray[np.float64]
 Picture = NDArray[np.float32]
 _MOST_ROWS, _MOST_PICTURES = 4096, 16
-#: Light of a pixel beyond any that fits into a float with two others.
+#: Largest light of a pixel, so that three sum to a finite float.
 _MOST = 1e38
 #: Axes of a panorama for ``resampled`` (+z at the middle, +x left of the middle, +y on top) from
 #: axes of pbrt-v3 (-x at the middle, +y left of the middle, +z on top).

@@ -58,7 +58,7 @@ class Files:
 
     @contextmanager
     def imported(self, name: str, place: Place) -> Iterator[Lexer]:
-        """Opens a file by itself, for ``Import``.
+        """Opens a file in a new lexer, for ``Import``.
 
         Raises:
             InputError: See ``enter``.
@@ -90,7 +90,7 @@ class Files:
         self._open.pop()
 
     def find(self, name: str, place: Place, what: str) -> Path | None:
-        """Returns the file of a name; None: there is no such file.
+        """Returns the file of a name; None: no such file.
 
         Args:
             name: Name in the scene.

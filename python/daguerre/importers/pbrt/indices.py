@@ -35,7 +35,7 @@ class Indices:
         self._spectra, self._notes = spectra, notes
 
     def glass(self, made: Made, names: tuple[str, ...], default: float) -> float | Spectrum:
-        """Index of a glass: one number, or a spectrum.
+        """Index of a glass: a number, or a spectrum.
 
         Args:
             made: Directive.

@@ -1,4 +1,4 @@
-"""Counts directives: each is used, or told in a note."""
+"""Counts directives: each is used, or reported in a note."""
 
 from __future__ import annotations
 

@@ -110,7 +110,7 @@ class Lexer:
         return value
 
     def values(self, place: Place) -> Values:
-        """Reads the value of a parameter: one token, or a list in brackets.
+        """Reads the value of a parameter: a token, or a list in brackets.
 
         Raises:
             InputError: There is none, the list does not end, or it mixes kinds.
@@ -172,7 +172,7 @@ class Lexer:
         return found
 
     def _begin(self) -> int:
-        """Where the next token begins, in the file that has it."""
+        """Place of the next token."""
         while True:
             start = self._skip()
             if start == len(self._data) and self._outer:
@@ -217,7 +217,7 @@ def _flag_like(inside: bytes) -> bool:
 
 
 def _number(token: bytes) -> float | None:
-    """Value of a number; None: it is none, or not finite."""
+    """Value of a number; None: no number, or not finite."""
     if token.translate(None, _OF_NUMBERS):
         return None
     try:

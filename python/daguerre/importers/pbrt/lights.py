@@ -93,13 +93,13 @@ class Lights:
         return scaled(self.color(made, "I"), self._unit**2)  # so that surfaces get the same light
 
     def world(self, made: Made) -> Array:
-        """Scene from the light's own space."""
+        """Scene from the light's space."""
         return np.asarray(self._axes @ made.state.transform.start)
 
     def frame(self, world: Array) -> tuple[Array, Array]:
-        """Rigid frame of a light, and its own space from that frame, shape (3, 3)."""
+        """Rigid frame of a light, and the light's space from that frame, shape (3, 3)."""
         u, _, v = np.linalg.svd(world[:3, :3])
-        ahead = np.diag([1.0, -1.0, -1.0])  # its own space shines along +z, the frame along -z
+        ahead = np.diag([1.0, -1.0, -1.0])  # the light's space shines along +z, the frame along -z
         turn, flip = u @ v, np.eye(3)
         if np.linalg.det(turn) < 0:
             flip[0, 0] = -1

@@ -63,7 +63,7 @@ class Looks:
         return self._look(material)
 
     def mask(self, shape: Made) -> Shade:
-        """Share of a shape that is there."""
+        """Covered share of a shape."""
         shape.parameters.find("shadowalpha")
         return self.textures.number(shape, "alpha", 1.0)
 

@@ -41,8 +41,8 @@ class Look:
     Attributes:
         kind: Kind of material.
         normals: Slot of a normal map.
-        bump: Slot of a normal map whose slopes each mesh scales.
-        opacity: Share of the surface that is there.
+        bump: Slot of a normal map with slopes that each mesh scales.
+        opacity: Covered share of the surface.
         opacity_slot: Slot of factors on the opacity.
         space: Mapping of set 1 of texture coordinates.
     """
@@ -219,7 +219,7 @@ def mix(made: Made, tools: Tools) -> Kind | Look:
 def mixed(made: Made, tools: Tools, first: str, second: str) -> Kind | Look:
     """Mixture of two named materials; ``amount`` is the share of the second.
 
-    An invisible part makes the other one partly transparent.
+    An invisible part makes the other part partly transparent.
     """
     (a, kind), (b, other) = (tools.part(made, name) for name in (first, second))
     if isinstance(other, Boundary):

@@ -68,7 +68,7 @@ class Media:
         return self._media[name]
 
     def inside(self, name: str, shape: Made) -> Medium | None:
-        """Medium of a name as the inside of a shape: a grid then stands in the shape's own space.
+        """Medium of a name as the inside of a shape: a grid is then in the shape's space.
 
         Args:
             name: Name of the medium.

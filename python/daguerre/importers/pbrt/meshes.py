@@ -58,7 +58,7 @@ class Meshes:
         """Adds shapes.
 
         Args:
-            shapes: Shapes of an object, or those outside of objects.
+            shapes: Shapes of an object, or shapes outside of objects.
             outer: Transforms of the object's instances; None: there is no object.
             name: Node of the object.
 

@@ -1,6 +1,6 @@
 """Parameters of a directive: ``"float fov" [ 45 ]``, read by name, type and range.
 
-Parameters that nothing asks for are told in a note, so that none is dropped silently.
+Unused parameters are reported in a note, so that no parameter is dropped silently.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ class Parameters:
         """Returns the parameter of a name; None: it is not given.
 
         Raises:
-            InputError: It has another type than one of these.
+            InputError: The parameter has a type other than ``types``.
         """
         self._asked.add(name)
         found = self._named.get(name)

@@ -28,7 +28,7 @@ class Spots:
 
     Attributes:
         name: Node of the copies.
-        outer: Transforms of the instances of its object; one identity outside of objects.
+        outer: Transforms of the instances of its object; a single identity outside of objects.
         place: Place of the directive, for messages.
     """
 

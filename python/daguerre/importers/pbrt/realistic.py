@@ -1,7 +1,7 @@
 """Reads the realistic camera: a lens file, its iris, its focus and its film.
 
-The lens is traced exactly, as the file has it. pbrt's camera stands at its film and focuses from
-there; Daguerre's stands in the entrance pupil.
+The prescription is traced exactly. pbrt's camera is at its film and focuses from
+there; Daguerre's is in the entrance pupil.
 
 Source: pbrt-v4's user's guide ("realistic"); ``RealisticCamera`` of pbrt-v4 and pbrt-v3.
 """

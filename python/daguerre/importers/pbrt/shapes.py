@@ -1,4 +1,4 @@
-"""Reads shapes as meshes in their own space.
+"""Reads shapes as meshes in object space.
 
 The front of a surface is the side of its normals ``N``, or else that from which its corners run
 counter-clockwise, whatever its transform is; ``ReverseOrientation`` exchanges both sides.
@@ -96,7 +96,7 @@ class Surface:
 
 
 def surface_of(made: Made, files: Files, notes: Notes) -> Surface | str:
-    """Reads a shape, or tells why it is left out: its kind is not supported, or it has no area.
+    """Reads a shape, or notes why it is left out: unsupported kind, or no area.
 
     Raises:
         InputError: A parameter or a file is wrong.
@@ -203,7 +203,7 @@ def _sphere(made: Made, files: Files, notes: Notes) -> Surface | str | None:
     area = np.radians(sweep) * radius * (high - low)
     if radius == 0:
         return None
-    ends = low / radius, high / radius  # spheres of all sizes are one mesh
+    ends = low / radius, high / radius  # spheres of all sizes share a mesh
     with asked_by(made.place):
         solid = _part_of_sphere(*ends, sweep, error)
     found = _of_solid(solid, area, ("sphere", *ends, sweep, error))

@@ -90,7 +90,7 @@ def _drawn(node: Node, size: tuple[int, int], period: float, common: Mapping | N
 
 
 def mean(node: Node) -> tuple[float, float, float]:
-    """Mean color of a tree, each texture over its own period."""
+    """Mean color of a tree, each texture over its period."""
     if isinstance(node, Constant):
         return node.color
     grid = (np.arange(64, dtype=np.float32) + 0.5) / 32
@@ -114,7 +114,7 @@ def _common(node: Node, notes: Notes) -> Mapping | None:
 
 
 def _leaves(node: Node) -> Iterator[Node]:
-    """Nodes of a tree with values of their own."""
+    """Constants, images and patterns of a tree."""
     if isinstance(node, Constant | Image | Checkerboard | Bilinear):
         yield node
     for part in parts(node):

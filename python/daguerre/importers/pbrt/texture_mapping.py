@@ -80,7 +80,7 @@ Mapping = UvMapping | SpaceMapping
 
 
 def mapping_of(made: Made, version: int) -> Mapping:
-    """Reads the mapping of a texture; planes of pbrt-v3 lie in the world.
+    """Reads the mapping of a texture; planes of pbrt-v3 are in the world.
 
     Raises:
         InputError: It is not known, or a parameter is wrong.

@@ -179,7 +179,7 @@ def evaluated(node: Node, u: Array, v: Array, common: Mapping | None) -> Array:
         node: The tree.
         u: Texture coordinates; with ``common``: coordinates s of that mapping.
         v: The same along v, or t.
-        common: Mapping of all its textures; None: each has its own, of texture coordinates.
+        common: Mapping of all its textures; None: each has a mapping of texture coordinates.
     """
     if isinstance(node, Constant):
         return node.at(u, v)

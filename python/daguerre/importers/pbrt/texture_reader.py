@@ -1,6 +1,6 @@
 """Reads directives ``Texture`` as trees of textures.
 
-Source: pbrt-v4's user's guide ("Textures"); names of pbrt-v3 where they are others.
+Source: pbrt-v4's user's guide ("Textures"); pbrt-v3's guide where names differ.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .texture_nodes import Bilinear, Blend, Checkerboard, Constant, Image, Node,
 
 #: Largest depth of textures within textures.
 _DEEPEST = 32
-#: Largest number of nodes of all trees, as textures may name one texture many times.
+#: Largest number of nodes of all trees, as textures may name a texture many times.
 _MOST_NODES = 100_000
 _WRAPS = ("repeat", "clamp", "black", "octahedralsphere")
 _FILTERS = {"point": "nearest", "bilinear": "linear", "trilinear": "linear", "ewa": "linear"}

@@ -65,7 +65,7 @@ class Assets:
     def resolve(
         self, place: str, asset: Sdf.AssetPath, attribute: Usd.Attribute | None = None
     ) -> Path | None:
-        """Returns the file of an asset; None if there is no such file.
+        """Returns the file of an asset; None: no such file.
 
         Args:
             place: Prim and attribute, for messages.
@@ -88,5 +88,5 @@ class Assets:
 
 
 def package_of(name: str) -> str:
-    """File of an asset; of one inside of a package, the package."""
+    """File of an asset; for a file inside of a package, the package."""
     return name.partition("[")[0] if Ar.IsPackageRelativePath(name) else name

@@ -20,7 +20,7 @@ from .values import Clock
 
 #: Colour of prims without a material and without a colour: as in USD's preview surface.
 _GREY = (0.18, 0.18, 0.18)
-#: Largest number of materials made for the colours of one prim's elements.
+#: Largest number of materials made for the colours of a prim's elements.
 _MAX_COLORS = 512
 
 

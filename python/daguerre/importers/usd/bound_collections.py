@@ -18,12 +18,12 @@ from .values import path_text
 
 #: Begin of the names of relationships that bind a material to a collection.
 BINDING = f"{UsdShade.Tokens.materialBindingCollection}:"
-#: Most targets of all bound collections, where one counts wherever it is included.
+#: Most targets of all bound collections, each counted wherever it is included.
 _MOST = 1_000_000
 
 
 class BoundCollections:
-    """Collections to which prims bind materials, each of which is followed once.
+    """Collections to which prims bind materials, each followed once.
 
     Args:
         file: File, for messages.
@@ -38,7 +38,7 @@ class BoundCollections:
         """Checks the collections that prims, or prims above them, bind.
 
         Raises:
-            InputError: Collections include one another too often.
+            InputError: Nested collections multiply too much.
         """
         for prim in prims:
             above = prim
@@ -54,7 +54,7 @@ class BoundCollections:
         """Follows a collection, once."""
         if first in self._known:
             return
-        chain: dict[Sdf.Path, None] = {}  # collections within one another take no stack
+        chain: dict[Sdf.Path, None] = {}  # nested collections take no stack
         waiting = [iter([first])]
         while waiting:
             path = next(waiting[-1], None)

@@ -45,7 +45,7 @@ def read_camera(
 
     Args:
         prim: Prim of type Camera.
-        transform: World from camera, rigid, m, shape (4, 4), or such over time.
+        transform: World from camera, rigid, m, shape (4, 4), or over time.
         stage: Facts of its stage.
         notes: Notes of the reader.
 
@@ -77,7 +77,7 @@ def _made(transform: Any, values: dict[str, Any], read: Checked, *, named: bool)
     """Makes the camera, and checks that its values go together.
 
     Args:
-        transform: World from camera, or such over time.
+        transform: World from camera, constant or over time.
         values: Its other parameters.
         read: Its attributes, for messages.
         named: Whether an attribute of ours names the mode ``manual``.
@@ -179,9 +179,9 @@ def _scaled(value: float | Keys, factor: float) -> float | Keys:
 
 
 def _completed(values: dict[str, Any], ours: dict[str, Any], notes: Notes) -> dict[str, Any]:
-    """Values and ours, without those that ours replace."""
+    """Merges values with ours; drops values that ours replace."""
     gone: set[str] = set()
-    if ours.get("lens") not in (None, *IDEAL):  # a prescription has its own focal length
+    if ours.get("lens") not in (None, *IDEAL):  # a prescription sets the focal length
         gone |= {"focal_length"}
     if any(name in ours for name in _STOPPED):
         gone |= {"f_stop"}

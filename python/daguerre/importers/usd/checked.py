@@ -60,7 +60,7 @@ class Checked:
         return self._number(name, value, -math.inf, None)
 
     def fixed(self, name: str) -> Any:
-        """Value of something that cannot move, at the scene's time; a note tells if it does."""
+        """Value at the scene's time; a note if it changes over time."""
         if self.stage.clock.codes(self.prim.GetAttribute(name)):
             self.notes.add(f"{name} of a camera changes over time; its value at one time is kept")
         return self.now(name)
@@ -92,7 +92,7 @@ class Checked:
         return self._tuple(name, value, count)
 
     def moving(self, name: str, convert: Callable[[float], float]) -> Any:
-        """Finite number over time: a constant or keys, each converted; None: there is none."""
+        """Finite number over time: a constant or keys, each converted; None: no value."""
         attribute = self.prim.GetAttribute(name)
 
         def each(value: object) -> float:
@@ -110,21 +110,21 @@ class Checked:
         return self.stage.clock.value(attribute, each)
 
     def text(self, name: str) -> str | None:
-        """Name or text at the scene's time; None: there is none, or it is empty."""
+        """Name or text at the scene's time; None: missing or empty."""
         value = self.fixed(name)
         if value is not None and not isinstance(value, str):
             self.fail(name, "a name", short(value))
         return value or None
 
     def asset(self, name: str) -> str | None:
-        """Path of an asset, as authored; None: there is none, or it is empty."""
+        """Path of an asset, as authored; None: missing or empty."""
         value = self.fixed(name)
         if value is not None and not isinstance(value, Sdf.AssetPath):
             self.fail(name, "an asset", short(value))
         return None if value is None else str(value.path) or None
 
     def accepted(self, name: str, field: str, value: object) -> Any:
-        """Checks a value, or each of its keys, as one of a parameter of ``Camera``."""
+        """Checks a value, or each of its keys, for a parameter of ``Camera``."""
         for part in value.values if isinstance(value, Keys) else (value,):
             try:
                 CAMERA[field].check(part, self.place(name))
@@ -165,7 +165,7 @@ class Checked:
 
 
 def _plain(attribute: Usd.Attribute, value: object) -> Any:
-    """Plain value; one of single precision as the shortest decimal number that means it."""
+    """Plain Python value; single precision as the shortest decimal that rounds to it."""
     made = plain(value)
     if str(attribute.GetTypeName()) not in _SINGLE:
         return made

@@ -38,7 +38,7 @@ class Clips:
         self._parts: dict[str, list[float]] = {name: [] for name in _RANGE}
 
     def add(self, sets: dict[str, Any]) -> None:
-        """Adds the sets of clips of a prim in one layer."""
+        """Adds the sets of clips of a prim in a layer."""
         for clip_set in sets.values():
             if not isinstance(clip_set, dict):
                 continue
@@ -77,7 +77,7 @@ def _is_number(value: object) -> bool:
 
 
 def named_clips(sets: dict[str, Any]) -> Iterator[str]:
-    """Clips and manifests that a prim names in one layer, as authored."""
+    """Clips and manifests that a prim names in a layer, as authored."""
     for clip in sets.values():
         if isinstance(clip, dict):
             yield from asset_names(clip.get("assetPaths"))

@@ -30,7 +30,7 @@ from .values import path_text
 
 #: Bytes that a prim takes at least, in USD and as a node of the scene.
 _PRIM_BYTES = 1000
-#: Most references inside of one another, and prims that loops make this count look at again.
+#: Most nested references, and most prims to count again because of loops.
 _MOST_ARCS, _MOST_AGAIN = 128, 30_000
 _MANY = 10**15
 #: Most specs of one prim, with all its references. USD leaves out the rest, after seconds for each
@@ -45,8 +45,8 @@ class _Sum:
     Attributes:
         prims: Number of specs.
         own: Number of specs of the prim itself, without the prims below it.
-        depth: Most prims inside of one another.
-        arcs: Most references inside of one another.
+        depth: Largest depth of prims.
+        arcs: Largest depth of references.
         classes: How often each class is used, by its path in the stack.
         loop: First place in the chain of references at which a loop was cut.
     """
@@ -216,7 +216,7 @@ class _Composed:
         return found
 
     def _loop(self, there: Stack, stack: Stack, path: Sdf.Path, target: Sdf.Path) -> int | None:
-        """Place in the chain that an arc leads back to, as prims, or ones above or below.
+        """Place in the chain that an arc leads back to: the same prim, an ancestor or a descendant.
 
         Raises:
             InputError: It leads below itself through an implied arc, where USD cuts no loop, and
@@ -238,7 +238,7 @@ class _Composed:
         return None
 
     def composed(self, stack: Stack, path: Sdf.Path) -> _Count:
-        """Sum of a path of a stack: its own specs, and those that arcs above it bring."""
+        """Sum of a path of a stack: specs there, and specs through arcs of its ancestors."""
         key = True, stack, path
         if key in self._known:
             return self._known[key]
@@ -281,7 +281,7 @@ class _Composed:
 
 
 def _target(there: Stack, arc: Arc, own: Sdf.Path) -> Sdf.Path | None:
-    """Prim that an arc leads to; None: there is none."""
+    """Prim that an arc leads to; None: no such prim."""
     if arc.path.isEmpty:
         default = there.root.GetDefaultPrimAsPath()
         return None if default.isEmpty else default

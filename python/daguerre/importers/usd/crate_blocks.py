@@ -34,7 +34,7 @@ def extremes(data: memoryview, count: int) -> tuple[int, int]:
 
 
 def unpacked(data: memoryview, size: int) -> bytes:
-    """Unpacks ``size`` bytes, stored as one block of LZ4 or several."""
+    """Unpacks ``size`` bytes, stored as blocks of LZ4."""
     if not len(data):
         return b""
     blocks, at = data[0], 1

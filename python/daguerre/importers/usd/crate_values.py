@@ -11,9 +11,9 @@ from .crate_blocks import DamageError
 
 ARRAY, INLINED = 1 << 63, 1 << 62
 OFFSET = (1 << 48) - 1
-#: Types of values: a dictionary, and those that hold one value of any type.
+#: Types of values: a dictionary, and types that hold a value of any type.
 DICTIONARY, VALUES = 31, (52, 53)
-#: Most values inside of one another, and in one dictionary and all inside of it.
+#: Largest depth of values, and most values in a dictionary with nested dictionaries.
 _DEEPEST, _MOST = 128, 10_000_000
 
 
@@ -30,7 +30,7 @@ class Nested:
         self._plain: set[int] = set()
 
     def inside(self, rep: int) -> list[int]:
-        """Values inside of one that are no dictionaries, each once; those of all calls before, too.
+        """Values nested in a value that are no dictionaries, each once in all calls.
 
         Raises:
             DamageError: It is nested too deeply, or holds itself, or too many values.
@@ -40,7 +40,7 @@ class Nested:
         return found
 
     def _size(self, rep: int, depth: int) -> int:
-        """Number of values that are read for one; parts that are shared count each time."""
+        """Number of values read for a value; shared parts count each time."""
         kind = rep >> 48 & 0xFF
         if rep & (ARRAY | INLINED) or kind not in (DICTIONARY, *VALUES):
             self._plain.add(rep)
@@ -55,7 +55,7 @@ class Nested:
         return self._sizes[rep]
 
     def _parts(self, offset: int, kind: int) -> list[int]:
-        """Values directly inside of one."""
+        """Values directly inside of a value."""
         count, at, name = 1, offset, 0
         if kind == DICTIONARY:
             (count,) = struct.unpack_from("<Q", self._data, offset)

@@ -132,7 +132,7 @@ class _Crate:
         return np.frombuffer(unpacked(self._data[where + 8 : where + 8 + packed], 8 * count), "<u8")
 
     def _values(self, reps: NDArray[np.uint64], depth: int) -> set[int]:
-        """Checks values, those in dictionaries and time samples, too; returns their types."""
+        """Checks values, also in dictionaries and time samples; returns their types."""
         kinds = (reps >> np.uint64(48)) & np.uint64(0xFF)
         found = {int(kind) for kind in np.unique(kinds)}
         nested = Nested(self._data)

@@ -108,7 +108,7 @@ def _has_pole_on_z(prim: Usd.Prim) -> bool:
 
 
 def read_panorama(path: Path, notes: Notes) -> Picture:
-    """Reads a picture of a dome, also one inside of a package.
+    """Reads a picture of a dome, also from a package.
 
     Args:
         path: The picture.

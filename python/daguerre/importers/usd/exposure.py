@@ -2,7 +2,7 @@
 
 ``fStop`` and the shutter make blur, ``exposure:*`` makes brightness: USD shows radiance x time x
 iso / 100 x responsivity x 2^exposure / fStop^2. A stage that has one of ``exposure:*`` itself is
-in the exposure mode ``manual``, with the schema's fallbacks for the others; else it is in
+in the exposure mode ``manual``, with the schema's fallbacks for the rest; else it is in
 ``light``. ``daguerre:exposure:mode`` names the mode.
 
 Source: OpenUSD, UsdGeomCamera, "Exposure" and "Shutter".

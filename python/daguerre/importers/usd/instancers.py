@@ -17,13 +17,13 @@ from daguerre.scene.over_time.quaternions import normalized, of_vectors, product
 from .values import Clock
 
 Array = NDArray[np.float64]
-#: Maximum number of copies in all samples of one instancer.
+#: Maximum number of copies in all samples of an instancer.
 _MAX_COPIES = 20_000_000
 
 
 @dataclass(frozen=True, eq=False)
 class Copies:
-    """Copies of one prototype.
+    """Copies of a prototype.
 
     Attributes:
         prototype: Its prim.

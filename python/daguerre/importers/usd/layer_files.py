@@ -12,7 +12,7 @@ from .crates import MAGIC, check_crate
 from .packages import entries_of
 from .text_layers import check_text
 
-#: Most packages inside of one another.
+#: Most nested packages.
 _DEEPEST = 4
 _TEXTS = (".usda", ".usd", ".sdf")
 
@@ -28,7 +28,7 @@ def check_file(path: Path, file: str) -> bool:
         Whether it may name files by expressions, or files inside of packages.
 
     Raises:
-        InputError: There is no such ordinary file; or it is damaged, or nested too deeply.
+        InputError: The file is no ordinary file, is damaged, or is nested too deeply.
     """
     if size_of(path) == 0:
         return False

@@ -12,7 +12,7 @@ from daguerre.errors import InputError
 
 from .bound_collections import BINDING
 
-#: Most prims inside of one another.
+#: Largest depth of prims.
 DEEPEST = 2000
 #: Most arcs of a layer: references, payloads, inherited and specialized classes.
 _MAX_ARCS = 2_000_000

@@ -50,7 +50,7 @@ class Layers:
         assets: Files that it may read.
 
     Attributes:
-        root: The stack of the stage's own file.
+        root: The stack of the stage's root layer.
         stacks: All stacks.
 
     Raises:
@@ -117,7 +117,7 @@ class Layers:
             self._check_assets(layer, names.assets, stack.variables)
 
     def _named(self, layer: Sdf.Layer, name: str, variables: Variables) -> Sdf.Layer | None:
-        """Layer that another one names; None: there is none that USD can open."""
+        """Layer that another layer names; None: USD can open no such layer."""
         absolute = self._absolute(layer, name, variables)
         if not absolute:
             return None
@@ -134,7 +134,7 @@ class Layers:
         return anchored(layer, evaluated) if evaluated else ""
 
     def _opened(self, name: str, real: str) -> Sdf.Layer | None:
-        """Opens a layer; None if there is none.
+        """Opens a layer; None: no such layer.
 
         Args:
             name: Its name for USD.

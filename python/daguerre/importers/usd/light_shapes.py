@@ -57,7 +57,7 @@ def area(positions: NDArray[Any], triangles: NDArray[Any], world: Array) -> floa
     """Area of a mesh in the scene, m2.
 
     Args:
-        positions: Shape (N, 3), in the mesh's own space.
+        positions: Shape (N, 3), in mesh space.
         triangles: Shape (M, 3).
         world: Scene from mesh, shape (4, 4).
     """

@@ -92,7 +92,7 @@ class Lighting:
         Args:
             visit: The mesh.
             spots: Places of the mesh.
-            meshes: All meshes of the prim, one for each of its materials; they share its power.
+            meshes: All meshes of the prim, one per material; they share its power.
             material: Material of one of the meshes.
         """
         lamp = Lamp(visit.prim, self._opened.clock, self._notes)
@@ -279,7 +279,7 @@ def _part(spots: Spots, chosen: NDArray[np.int64]) -> Spots:
 
 
 def _by_size(spots: Spots) -> Iterator[Spots]:
-    """Places among which a mesh has one size and shape: equal products of axes of the transform."""
+    """Groups places where a mesh has equal size and shape: equal products of transform axes."""
     if len(spots) == 1:
         yield spots
         return

@@ -75,7 +75,7 @@ class Lamp:
         _note_the_rest(UsdLux.LightAPI(prim), notes)
 
     def size(self, name: str) -> float:
-        """A length of the light at the scene's time, at least 0, in its own units.
+        """A length of the light at the scene's time, at least 0, in the prim's units.
 
         Raises:
             InputError: It is beyond the limits of a scene.
@@ -95,7 +95,7 @@ class Lamp:
         return self._number(name, self._clock.now(attribute))
 
     def color(self, name: str, default: Color) -> Color:
-        """A colour at the scene's time; the default if the light has no such attribute."""
+        """A colour at the scene's time; the default if the prim lacks the attribute."""
         attribute = self.prim.GetAttribute(name)
         return self._color(name, plain(self._clock.now(attribute))) if attribute else default
 

@@ -70,7 +70,7 @@ class Materials:
 
         Args:
             material: The material.
-            has: Names of the primvars of the surface; readers of others give their fallback.
+            has: Names of the surface's primvars; reads of other primvars give their fallback.
 
         Raises:
             InputError: A value, a picture or a document is wrong; the message names it.
@@ -78,7 +78,7 @@ class Materials:
         return self.index_at(material.GetPrim().GetStage(), material.GetPath(), has)
 
     def index_at(self, stage: Usd.Stage, path: Sdf.Path, has: PrimvarNames) -> int:
-        """Index of the material at a path, also where only a ``.mtlx`` file has it."""
+        """Index of the material at a path, also from a ``.mtlx`` file alone."""
         key, graph = self._graph(stage, path)
         sets, colored = uv_sets(graph), vertex_colors(graph)
         names = frozenset(has)
@@ -117,7 +117,7 @@ class Materials:
         return self._indices[key]
 
     def uv_sets(self, material: UsdShade.Material) -> tuple[str, ...]:
-        """Names of the primvars of its texture coordinates: set 0, set 1, and others."""
+        """Names of the primvars of texture coordinates: set 0, set 1, and further sets."""
         return self.uv_sets_at(material.GetPrim().GetStage(), material.GetPath())
 
     def uv_sets_at(self, stage: Usd.Stage, path: Sdf.Path) -> tuple[str, ...]:

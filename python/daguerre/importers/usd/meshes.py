@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 #: Limit faces of all subdivision surfaces of a stage that decide the level of each.
 _DETAIL = 1_500_000
-#: Limit faces of one surface, and levels.
+#: Largest number of limit faces of a surface, and of levels.
 _MOST_FACES, _MOST_LEVELS = 250_000, 4
 #: Names of texture coordinates where a material names none.
 USUAL_UV = ("st", "UVMap", "map1", "st0", "uv")
@@ -116,7 +116,7 @@ class Meshes:
         Args:
             source: Path of the prim that instances share.
             prim: The prim.
-            read: Reads its points, constant or over time, and those before a skin moved them.
+            read: Reads points, constant or over time, after and before skinning.
             choice: Faces and coordinates.
             faces: Faces of the subset; None for all.
         """
@@ -279,7 +279,7 @@ def _quiet(surface: Surface, points: Array) -> tuple[Array, Array | None]:
 
 
 def _packed(indices: NDArray[Any], count: int) -> tuple[NDArray[Any], NDArray[np.int64]]:
-    """Numbers the vertices that are used from 0 on; returns the indices and those vertices."""
+    """Renumbers used vertices from 0; returns the new indices, and the used vertices."""
     seen = np.zeros(count, bool)
     seen[indices] = True
     return (np.cumsum(seen, dtype=np.uint32) - 1)[indices], np.flatnonzero(seen)

@@ -32,10 +32,9 @@ def material_in_document(stage: Usd.Stage, path: Sdf.Path) -> tuple[str, str] | 
 
 
 def bound_path(prim: Usd.Prim) -> Sdf.Path | None:
-    """Target of the nearest direct binding of a prim or one around it, whether a prim is there.
+    """Target of the nearest direct binding of a prim or its ancestors, even if it does not exist.
 
-    USD's own search leaves out targets that are no prims, which materials of ``.mtlx`` are without
-    its plugin.
+    USD's search skips targets that are no prims, such as materials of ``.mtlx`` without the plugin.
     """
     while prim and not prim.IsPseudoRoot():
         binding = UsdShade.MaterialBindingAPI(prim).GetDirectBinding()

@@ -9,7 +9,7 @@ from daguerre.errors import InputError
 
 from .values import Clock
 
-#: Maximum number of point instancers inside of one another.
+#: Maximum number of nested point instancers.
 _DEEPEST = 32
 
 
@@ -29,7 +29,7 @@ class Totals:
         """Number of shapes and lights in all copies of an instancer.
 
         Raises:
-            InputError: It contains itself, or too many are inside of one another.
+            InputError: The instancer contains itself, or too many instancers are nested.
         """
         path = str(prim.GetPath())
         if path in self._open or len(self._open) >= _DEEPEST:

@@ -18,7 +18,7 @@ from daguerre.importers.usd.anchored import anchored
 from daguerre.motion.values import Keys
 from daguerre.shading.materialx.graph import MAX_NODES, Constant, Graph, Link, Node
 
-#: Most connections that one input passes through node graphs.
+#: Most connections from an input through node graphs.
 _MAX_HOPS = 1000
 #: Render contexts, the preferred first.
 _CONTEXTS = ("mtlx", "")

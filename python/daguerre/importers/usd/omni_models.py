@@ -29,7 +29,7 @@ class OmniModel:
         focal: Focal lengths, px; empty: there are none.
         terms: Coefficients, in the order of the projection's parameters.
         field: Largest field of view, degrees; empty: none.
-        defaults: Meaning of attributes that the stage leaves out; others are 0.
+        defaults: Defaults of attributes other than 0.
     """
 
     name: str

@@ -1,7 +1,7 @@
 """Finds time samples between which USD interpolates a value as closely as single precision shows.
 
 USD interpolates numbers linearly and rotations along the shortest arc. A value that Daguerre
-interpolates alike needs no samples but its keys; others get more where they bend.
+interpolates alike needs samples at its keys only; other values get more where they curve.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def pose(world: Sequence[Any] | NDArray[np.float64]) -> tuple[Any, Any]:
     """Position, and rotation as a quaternion (x, y, z, w), of a rigid transform (4, 4)."""
     m = np.asarray(world, np.float64)
     r = m[:3, :3]
-    # The one of four ways to the quaternion that divides by the most (Shepperd 1978).
+    # Of four formulas for the quaternion, use the largest divisor (Shepperd 1978).
     four = np.array([r[0, 0] - r[1, 1] - r[2, 2], r[1, 1] - r[0, 0] - r[2, 2],
                      r[2, 2] - r[0, 0] - r[1, 1], r[0, 0] + r[1, 1] + r[2, 2]])  # fmt: skip
     i = int(np.argmax(four))

@@ -51,8 +51,8 @@ def times(outer: Spots, copies: Copies, inner: Matrix | Transform, name: str, ti
     """Places of the copies of an instancer that itself may be copied.
 
     Args:
-        outer: Places of the instancer, with its own transform.
-        copies: Copies of one prototype.
+        outer: Places of the instancer, with its transform.
+        copies: Copies of a prototype.
         inner: The prototype's own transform.
         name: Node of the instancer.
         time: Scene time, s.

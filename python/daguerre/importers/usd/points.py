@@ -37,7 +37,7 @@ def read_points(schema: UsdGeom.PointBased, clock: Clock, notes: Notes) -> Array
         notes: Receives notes on points that cannot move as stated.
 
     Returns:
-        Shape (N, 3), in the prim's space, or such points over time.
+        Shape (N, 3), in the prim's space, or over time.
 
     Raises:
         InputError: They are not finite.

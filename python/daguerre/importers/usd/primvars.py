@@ -12,7 +12,7 @@ from .values import Clock
 
 
 def read_primvar(prim: Usd.Prim, name: str, columns: int, clock: Clock) -> Primvar | None:
-    """Reads a primvar of a prim, or one that it inherits, at the scene's time.
+    """Reads a primvar of a prim, authored or inherited, at the scene's time.
 
     Args:
         prim: The prim.
@@ -21,7 +21,7 @@ def read_primvar(prim: Usd.Prim, name: str, columns: int, clock: Clock) -> Primv
         clock: Time codes of the stage.
 
     Returns:
-        The primvar; None if there is none, or if it is of another type.
+        The primvar; None: missing, or of another type.
     """
     found = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance(name)
     if not found or not found.HasValue():
@@ -38,7 +38,7 @@ def read_primvar(prim: Usd.Prim, name: str, columns: int, clock: Clock) -> Primv
 
 
 def as_rows(value: object, columns: int) -> Array | None:
-    """Converts a value of USD to an array (N, columns) of finite numbers; None for others."""
+    """Converts a value of USD to an array (N, columns) of finite numbers; None: another type."""
     try:
         rows = np.asarray(value, np.float32)
     except (TypeError, ValueError):

@@ -69,7 +69,7 @@ def read(
         path: The file.
         time: Scene time, s: time codes over the stage's time codes per second.
         variant: Selections of variants, each as ``/prim:set=name``.
-        allow_dirs: Folders, besides the stage's own, from which it may read layers and images.
+        allow_dirs: Further folders from which it may read layers and images.
         purpose: Purposes of prims to draw, besides ``default``.
         camera_units: Length of a unit of focal lengths and apertures, mm; default: a tenth of a
             scene unit.

@@ -32,7 +32,7 @@ _ACROSS = 32
 
 
 def solid_of(prim: Usd.Prim, clock: Clock) -> ShapeMesh | None:
-    """Makes the mesh of a solid at the scene's time; None for another prim, or one of size 0.
+    """Makes the mesh of a solid at the scene's time; None: another prim, or size 0.
 
     Raises:
         InputError: A size is not finite.
@@ -45,7 +45,7 @@ def solid_of(prim: Usd.Prim, clock: Clock) -> ShapeMesh | None:
 
 
 def is_solid(prim: Usd.Prim) -> bool:
-    """Whether a prim is one of the solids."""
+    """Whether a prim is a solid."""
     return any(prim.IsA(kind) for kind in _SOLIDS)
 
 
@@ -86,7 +86,7 @@ def _cube(sizes: _Sizes) -> ShapeMesh | None:
 def _plane(sizes: _Sizes) -> ShapeMesh | None:
     width, length, axis = sizes["width"], sizes["length"], sizes.axis
     corners = 0.5 * SQUARE
-    # Source: UsdGeomPlane: width lies along x (z for axis X), length along y (z for axis Y).
+    # Source: UsdGeomPlane: width is along x (z for axis X), length along y (z for axis Y).
     across, along = {"X": (2, 1), "Y": (0, 2), "Z": (0, 1)}[axis]
     positions = np.zeros((4, 3))
     positions[:, across] = corners[:, 0] * width
@@ -114,7 +114,7 @@ def _capsule(sizes: _Sizes) -> ShapeMesh | None:
 
 
 def _hull(radii: tuple[float, float], height: float, axis: str) -> ShapeMesh | None:
-    """Hull of two balls, the second one higher on the axis by ``height``.
+    """Hull of two balls, the second higher on the axis by ``height``.
 
     Its side touches both at a latitude: its sine is the difference of radii over the height.
     """

@@ -59,7 +59,7 @@ class Skeletons:
         return found[1] if found is not None and found[0].HasJointInfluences() else None
 
     def animation_of(self, prim: Usd.Prim) -> str:
-        """Paths of the skeleton and the animation that move a mesh; empty if none does."""
+        """Paths of the skeleton and the animation that move a mesh; empty: not skinned."""
         found = self._queries.get(str(prim.GetPath()))
         if found is None:
             return ""

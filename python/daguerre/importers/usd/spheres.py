@@ -1,4 +1,4 @@
-"""Reads points as spheres: instances of one ball, scaled to each width."""
+"""Reads points as spheres: instances of a ball, scaled to each width."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .primvars import as_rows, note_length
 from .shapes import ball
 from .values import Clock
 
-#: Largest number of moving points; each is an instance with its own motion.
+#: Largest number of moving points; each is an instance with a motion.
 _MAX_MOVING = 200_000
 
 

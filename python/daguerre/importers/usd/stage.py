@@ -1,7 +1,7 @@
 """Opens a stage, confined to its folder, and reads its units, axes and time codes.
 
 USD itself follows every path that a layer names. Here each layer is checked before it is opened:
-it must lie in the stage's folder or in one of ``allow_dirs``, links followed.
+it must be in the stage's folder or in one of ``allow_dirs``, links followed.
 """
 
 from __future__ import annotations
@@ -122,12 +122,12 @@ def open_stage(
         path: File.
         time: Scene time, s.
         variants: Selections of variants, each as ``/prim:set=name``.
-        allow_dirs: Folders, besides the stage's own, from which it may read.
+        allow_dirs: Further folders from which it may read.
         notes: Receives notes on layers that are missing.
 
     Raises:
         InputError: A layer is damaged, or outside of the folders; or unit or time code is invalid.
-        UsageError: There is no such variant.
+        UsageError: The stage has no such variant.
     """
     file = str(path)
     size_of(path)
@@ -177,7 +177,7 @@ def _note_missing(stage: Usd.Stage, notes: Notes) -> None:
         kind = type(error).__name__.removeprefix("Error")
         if kind.startswith("Invalid") and ("Asset" in kind or "Sublayer" in kind):
             if re.search(r"asset @[^@]*\.mtlx@", str(error)):
-                continue  # the reader of materials finds these by itself
+                continue  # the reader of materials finds these
             notes.add("a layer of the stage cannot be opened; its contents are left out")
         else:
             words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", kind).lower()

@@ -29,7 +29,7 @@ class StageFacts:
         metres: Length of a scene unit, m (``metersPerUnit``).
         camera_millimetres: Length of a unit of camera lengths, mm; None: a tenth of a scene unit,
             as UsdGeomCamera has it.
-        resolve: Finds the file of an asset, and refuses those outside of the stage's folder.
+        resolve: Finds the file of an asset, and refuses files outside of the stage's folder.
         fps: Frames per second; None: the time codes per second.
     """
 

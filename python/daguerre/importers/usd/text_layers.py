@@ -1,6 +1,6 @@
 """Checks text layers before USD parses them, as its parser recurses at each bracket.
 
-Some thousand brackets inside of one another end the process. Here brackets outside of strings,
+Some thousand nested brackets end the process. Here brackets outside of strings,
 names of files, paths and comments are counted, in time proportional to the length of the text.
 
 Source: OpenUSD, ``pxr/usd/sdf/textFileFormatParser.h`` (lexemes).
@@ -15,7 +15,7 @@ import numpy as np
 
 from daguerre.errors import InputError
 
-#: Most brackets inside of one another: of prims, variants, dictionaries, lists and tuples.
+#: Most nested brackets: of prims, variants, dictionaries, lists and tuples.
 DEEPEST = 1000
 #: Bytes that are counted at once.
 _PIECE = 1 << 20
@@ -35,7 +35,7 @@ _LEXEME = re.compile(
     )""",
     re.VERBOSE | re.DOTALL,
 )
-#: A file that an expression names, or one inside of a package; more may match.
+#: A file that an expression names, or a file inside of a package; more may match.
 _ODD_ASSET = re.compile(rb"@[^@\r\n]*[\[`]")
 _NESTED_TARGETS = re.compile(rb"<(?:[^<>\[\r\n]*\[){%d}" % DEEPEST)
 #: Brackets as bytes 1 and -1; and all other bytes.
@@ -58,7 +58,7 @@ def check_text(data: bytes, file: str) -> bool:
     """
     expressions = b"pathExpression" in data
     if expressions and any(too_deep(match[0]) for match in _LEXEME.finditer(data)):
-        raise too_deep_error(file)  # in a string, which is parsed on its own
+        raise too_deep_error(file)  # in a string, which is parsed separately
     if _NESTED_TARGETS.search(data) or too_deep(_LEXEME.sub(b"", data)):
         raise too_deep_error(file)
     return _ODD_ASSET.search(data) is not None

@@ -100,7 +100,7 @@ def _count(kind: str, axes: str) -> int:
 
 @dataclass(frozen=True)
 class _Numbers:
-    """Converts values of one operation, of which a stage may state another type."""
+    """Converts values of an operation; a stage may state another type."""
 
     where: str
     count: int
@@ -109,7 +109,7 @@ class _Numbers:
         """The number, or the numbers.
 
         Raises:
-            InputError: There are others, or one is not finite.
+            InputError: The value has another type, or a number is not finite.
         """
         made = plain(value)
         numbers = made if isinstance(made, tuple) else (made,)
@@ -134,7 +134,7 @@ def _check(made: Operation, where: str, time: float) -> None:
 class _Affine:
     """Converts matrices of USD to affine matrices.
 
-    USD multiplies homogeneous coordinates and divides by the last one, so 0, 0, 0, w in the last
+    USD multiplies homogeneous coordinates and divides by the last, so 0, 0, 0, w in the last
     column is a division by w. A perspective is dropped; the origin keeps its place.
 
     Source: OpenUSD, GfMatrix4d::Transform, and the shaders of Storm. (HdEmbree ignores the column.)
@@ -151,7 +151,7 @@ class _Affine:
         """An affine matrix that acts on column vectors, shape (4, 4).
 
         Raises:
-            InputError: A number is not finite, or the last one is 0.
+            InputError: A number is not finite, or the last number is 0.
         """
         made: Matrix = plain(value)
         if np.shape(made) != (4, 4) or made.dtype.kind != "f":

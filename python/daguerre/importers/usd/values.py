@@ -165,7 +165,7 @@ class Clock:
             attribute: The attribute.
             convert: Converts a value; the result is a number, a tuple, an array, a flag or a name.
             large: Whether it is an array with many numbers, which keeps only the samples that the
-                moments need. All of them tell whether it changes.
+                moments need. All samples decide whether it changes.
         """
         if not attribute:
             return None
@@ -262,7 +262,7 @@ def _spline_codes(attribute: Usd.Attribute) -> list[float]:
 
 
 def authored(attribute: Usd.Attribute) -> bool:
-    """Whether a stage has its own value of an attribute, in place of the schema's fallback."""
+    """Whether a stage authors an attribute, in place of the schema's fallback."""
     return bool(attribute) and attribute.HasAuthoredValue()
 
 

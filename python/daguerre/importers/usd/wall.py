@@ -1,6 +1,6 @@
 """Reads stages behind a wall: USD runs in a helper process, which answers with a packed scene.
 
-USD crashes, loops or fills the memory on some damaged files; whatever it does there is one
+USD crashes, loops or fills the memory on some damaged files; each of these raises one
 ``InputError`` here. This process does not import USD to read. A fault may hand the helper over to a
 stranger, so its answer is rebuilt with checks, like a scene in a stranger's file.
 """
@@ -22,7 +22,7 @@ from daguerre.scene.packed.values import make_verbatim
 from daguerre.scene.scene import Scene
 
 _TASKS = "daguerre.importers.usd.inside"
-#: Begin of a text that the helper tells: a file that it reads, and the bytes of a decoded picture.
+#: Prefixes of the helper's texts: a file that it reads, and the bytes of a decoded picture.
 FILE, PIXELS = "file ", "pixels "
 #: Limits for a stage of at most ``_SMALL`` bytes.
 _SECONDS, _MEMORY, _SMALL = 10.0, 1.5e9, 1e6
@@ -53,7 +53,7 @@ def read(
         path: The file.
         time: Scene time, s: time codes over the stage's time codes per second.
         variant: Selections of variants, each as ``/prim:set=name``.
-        allow_dirs: Folders, besides the stage's own, from which it may read layers and images.
+        allow_dirs: Further folders from which it may read layers and images.
         purpose: Purposes of prims to draw, besides ``default``.
         camera_units: Length of a unit of focal lengths and apertures, mm; default: a tenth of a
             scene unit.
@@ -108,7 +108,7 @@ def time_of_code(path: str | os.PathLike[str], code: float, *, in_process: bool 
 class _Uses:
     """Limits that grow with the files that a stage reads.
 
-    Only files that are there count, each once: the helper tells their names, but not their sizes.
+    Only existing files count, each once: the helper reports names, but no sizes.
     """
 
     def __init__(self) -> None:

@@ -1,4 +1,4 @@
-"""A grid of numbers in space, as a file has it."""
+"""A grid of numbers in space, as stored in a file."""
 
 from __future__ import annotations
 

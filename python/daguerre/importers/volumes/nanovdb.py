@@ -42,7 +42,7 @@ _BLOSC_CHUNK = 1 << 30
 
 @dataclass(frozen=True)
 class _Entry:
-    """A grid of a file, packed: its name, where it lies, and its size when unpacked."""
+    """A packed grid of a file: name, position, and unpacked size."""
 
     name: str
     begin: int

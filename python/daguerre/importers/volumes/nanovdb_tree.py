@@ -2,7 +2,7 @@
 
 A root has tiles of 4096 cells along each axis. A tile is one value or an upper node of 32^3
 entries, each one value or a lower node of 16^3 entries, each one value or a leaf of 8^3 cells. A
-node stands at an offset, in bytes, from the node above it.
+node is at an offset, in bytes, from its parent node.
 
 Source: OpenVDB, ``nanovdb/PNanoVDB.h``, version 32: offsets in grids of single-precision numbers.
 """
@@ -158,7 +158,7 @@ def _records(
 
 
 class _Tree:
-    """Values of a tree: blocks of one value, and leaves.
+    """Values of a tree: blocks of a constant value, and leaves.
 
     Args:
         data: Bytes of the grid.
@@ -167,7 +167,7 @@ class _Tree:
         where: Owner, for messages.
 
     Raises:
-        InputError: A node lies outside of the grid, or nodes are used more than once.
+        InputError: A node is outside of the grid, or nodes are used more than once.
     """
 
     def __init__(self, data: Bytes, root: int, tiles: int, where: str) -> None:
@@ -188,7 +188,7 @@ class _Tree:
             raise InputError(f"{where}: leaves are outside of the grid")
 
     def box(self) -> tuple[Integers, Integers]:
-        """First active cell along each axis, and one past the last; 0 and 0 if there is none."""
+        """First active cell along each axis, and last plus 1; 0 and 0 if no cell is active."""
         found = [(block.corners.min(axis=0), block.corners.max(axis=0) + block.size)
                  for block in self._blocks]  # fmt: skip
         for rows, corners in self._some_leaves():
@@ -217,7 +217,7 @@ class _Tree:
         for rows, corners in self._some_leaves():
             x, y, z = ((corners - first) // 8).T
             own = rows["values"].reshape(-1, 8, 8, 8).transpose(0, 3, 2, 1)
-            inside = ((corners >= first) & (corners < last)).all(axis=1)  # others are inactive
+            inside = ((corners >= first) & (corners < last)).all(axis=1)  # else inactive
             leaves[z[inside], :, y[inside], :, x[inside], :] = own[inside]
         x, y, z = (slice(*pair) for pair in zip(low - first, high - first, strict=True))
         return np.ascontiguousarray(values[z, y, x])
@@ -268,7 +268,7 @@ class _Tree:
 
 @dataclass(frozen=True, eq=False)
 class _Blocks:
-    """Cubes of cells with one value each.
+    """Cubes of cells with a constant value each.
 
     Attributes:
         size: Cells along a side.

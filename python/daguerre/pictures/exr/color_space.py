@@ -112,7 +112,7 @@ def is_container(frame: Frame) -> bool:
 
 
 def container_planes(planes: Mapping[str, Any]) -> dict[str, Any]:
-    """Channels of a container: R, G, B and A in half floats; more than those hold is clamped."""
+    """Channels of a container: R, G, B and A in half floats; larger values are clamped."""
     return {
         name: np.clip(planes[name], -_MOST_HALF, _MOST_HALF).astype(np.float16)
         for name in ("RGB", "A")

@@ -1,4 +1,4 @@
-"""Joins crops of a picture into one file, in bands of rows, which needs little memory."""
+"""Joins crops of a picture into one file, in bands of rows, to need little memory."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .rows import ExrWriter
 BAND = 64  # rows at a time
 Box = tuple[int, int, int, int]  # first column and row, and last column and row plus 1
 #: Attributes that may differ between crops: counts are added, adaptive sampling and light
-#: paths stay if all crops agree, others are left out.
+#: paths stay if all crops agree, other attributes are left out.
 COUNTS = ("daguerre:bad_samples", "daguerre:motion_missing")
 IF_ALIKE = ("daguerre:light_paths", "daguerre:noise", "daguerre:denoised_noise")
 ADAPTIVE = ("daguerre:samples", "daguerre:samples_min", "daguerre:samples_max")
@@ -39,7 +39,7 @@ def join_crops(paths: Sequence[str | os.PathLike[str]], out: str | os.PathLike[s
 
     Args:
         paths: Crops of one picture (``.exr``) that fill a rectangle, without overlaps.
-        out: File to write; it may be one of them.
+        out: File to write; it may be one of the crops.
 
     Returns:
         Box of the joined pixels.

@@ -109,7 +109,7 @@ def read_layouts(path: Path, wanted: int | None = None) -> list[Layout]:
 
     Args:
         path: The file.
-        wanted: Number of the only part to check; others may be of any kind. None: all parts.
+        wanted: Number of the only part to check; other parts may be of any kind. None: all parts.
 
     Raises:
         InputError: It is not an OpenEXR file; or a checked part is deep, subsampled, damaged,

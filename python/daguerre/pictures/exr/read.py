@@ -1,4 +1,4 @@
-"""Reads OpenEXR files as frames: Daguerre's own completely, others as far as they go.
+"""Reads OpenEXR files as frames: Daguerre's completely, files of other programs as far as possible.
 
 The counterpart of :mod:`daguerre.pictures.exr.write`. Colours that the file states become linear
 Rec.709 (:mod:`daguerre.pictures.stated_colors`).
@@ -81,7 +81,7 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
 
 
 def _place(reader: ExrReader) -> dict[str, Any]:
-    """Size of the whole picture, and the box in the file; overscan lies outside of the picture."""
+    """Size of the whole picture, and the box in the file; overscan is outside of the picture."""
     (x, y), (left, top) = reader.corner, reader.full_corner
     x0, y0 = x - left, y - top
     width, height = reader.full_size
@@ -94,7 +94,7 @@ def _writable(plane: NDArray[Any]) -> NDArray[Any]:
 
 
 def _group(planes: Planes, names: list[str]) -> NDArray[np.float32] | None:
-    """Removes channels from ``planes`` and stacks them; None: no names, or one is missing."""
+    """Removes channels from ``planes`` and stacks them; None: no names, or a channel is missing."""
     if not names or not all(name in planes for name in names):
         return None
     return np.stack([planes.pop(name) for name in names], axis=2)

@@ -1,6 +1,6 @@
 """Writes frames as OpenEXR, with channels and attributes of the standard and of Daguerre.
 
-Standard attributes: OpenEXR "Standard Optional Attributes"; own ones begin with ``daguerre:``.
+Standard attributes follow OpenEXR's "Standard Optional Attributes"; others are ``daguerre:*``.
 """
 
 from __future__ import annotations

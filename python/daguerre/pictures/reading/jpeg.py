@@ -10,7 +10,7 @@ from daguerre.errors import InputError
 from .size import check_size
 from .source import Source
 
-#: Most scans: each one visits all pixels, however few bytes it has.
+#: Most scans: each visits all pixels, however few bytes it has.
 MAX_SCANS = 500
 _START_OF_SCAN, _END = b"\xff\xda", b"\xff\xd9"
 #: Markers without a length: TEM, and RST0 to EOI.

@@ -28,7 +28,7 @@ class Kind:
         title: Name for messages.
         suffixes: Suffixes that choose this plug-in.
         mark: Pattern of the first bytes; None: it has none, and its suffix decides.
-        here: Whether its decoder may run in this process; otherwise it runs in one apart.
+        here: Whether its decoder may run in this process; otherwise it runs in a process apart.
     """
 
     name: str
@@ -70,7 +70,7 @@ KINDS = (
     _kind("softimage", "Softimage PIC", "pic", rb"\x53\x80\xf6\x34"),
     _kind("rla", "RLA", "rla", None),
 )
-#: Names of others that people have, which are refused.
+#: Names of other common kinds, which are refused.
 _OTHERS = {
     "HEIF or AVIF": rb"....ftyp(hei|hev|mif|msf|avi[fs])",
     "a video": rb"....ftyp|....moov|\x1aE\xdf\xa3|RIFF....AVI |\x00\x00\x01[\xb3\xba]|OggS",

@@ -27,7 +27,7 @@ _CHECKS: dict[str, Callable[[Source, str, int], bool | None]] = {
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture as its file has it.
+    """A picture with the numbers of its file.
 
     Attributes:
         pixels: Shape (H, W, C), not turned upright.

@@ -59,7 +59,7 @@ class Source:
 
     @contextmanager
     def file(self, suffixes: tuple[str, ...]) -> Iterator[str]:
-        """Path of a file with these bytes and one of these suffixes.
+        """Path of a file with these bytes and an allowed suffix.
 
         A plug-in of OpenImageIO is chosen by the suffix of a name: a file under another one gets a
         link, or a copy where the system makes no links.

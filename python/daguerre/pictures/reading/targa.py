@@ -14,7 +14,7 @@ from .source import Source
 
 _HEAD = 18
 _PALETTE, _PACKED = (1, 9), (9, 10, 11)
-#: Most pixels that one packet of a packed file holds.
+#: Most pixels in a packet of a compressed file.
 _PACKET = 128
 
 

@@ -114,7 +114,7 @@ def plain_pixels(source: Source, where: str, limit: int) -> NDArray[np.generic]:
 
 
 def read_tags(source: Source, where: str) -> Tags:
-    """Reads the whole numbers of the first directory; each tag has at least one.
+    """Reads the whole numbers of the first directory; each tag has at least one number.
 
     Raises:
         InputError: The directory is not within the file.

@@ -37,7 +37,7 @@ class _Scope:
         path: Prefix of the names of its nodes.
         element: The document or node graph.
         outer: Scope around it.
-        use: Element whose inputs are the interface: the graph itself, or a node defined by it.
+        use: Element with the inputs of the interface: the graph itself, or a node defined by it.
         defaults: Definition with the values of inputs that ``use`` does not set.
         depth: Number of scopes around it.
     """
@@ -145,7 +145,7 @@ class _Walk:
         return Graph(self._nodes, surface, _displaces(self._nodes.get(displacement)))
 
     def _shader(self, material: _Source, name: str) -> str:
-        """Name of the node of an input of a material; empty: there is none."""
+        """Name of the node of an input of a material; empty: no node."""
         for child in material.element.children:
             if child.get("name") == name:
                 found = self._resolved(_Source(child, material.scope))
@@ -263,7 +263,7 @@ class _Walk:
         return Link(path, output)
 
     def _find(self, source: _Source, name: str) -> Element | None:
-        """Element of this name in the scope; a note if there is none."""
+        """Element of this name in the scope; a note if missing."""
         element = self._document._named(source.scope).get(name)
         if element is None:
             self._document._notes.add("MaterialX: a connection to a missing node is left out")

@@ -34,7 +34,7 @@ class Element:
     children: list[Element] = field(default_factory=list)
 
     def get(self, name: str) -> str:
-        """Value of an attribute; empty if there is none."""
+        """Value of an attribute; empty if missing."""
         return self.attributes.get(name, "")
 
     def inherited(self, name: str) -> str:
