@@ -59,7 +59,7 @@ class Answer:
             make: Makes values of classes, with checks; default: none may come.
 
         Raises:
-            InputError: It is damaged.
+            InputError: The answer is damaged.
         """
         if not self.blocks:
             raise InputError(f"{self.where}: cannot read: the helper process sent nothing")

@@ -49,7 +49,7 @@ class Process:
     """A helper process.
 
     Raises:
-        OSError: It cannot be started.
+        OSError: The process cannot be started.
     """
 
     def __init__(self) -> None:
@@ -99,7 +99,7 @@ class Process:
 
     @property
     def alive(self) -> bool:
-        """Whether it runs."""
+        """Whether the process runs."""
         return self._process.poll() is None
 
     def limit(self, limits: Limits, *, anew: bool = True) -> None:
@@ -179,7 +179,7 @@ class Process:
         """Ends the helper if it is beyond its limits.
 
         Raises:
-            EndedError: It was.
+            EndedError: The helper exceeded a limit, and was ended.
         """
         self._looked = time.monotonic()
         self._peak = max(self._peak, self.resident)

@@ -30,7 +30,7 @@ def copied(blocks: Sequence[memoryview]) -> int | None:
     """Copies blocks into a sealed file, aligned as in a packed value.
 
     Returns:
-        The open file; None: it cannot be made here.
+        The open file; None: this system has no sealed files.
     """
     if not HAS_FILES:
         return None
@@ -59,7 +59,7 @@ def mapped(files: list[int], sizes: Sequence[int]) -> list[NDArray[np.uint8]]:
         sizes: Numbers of bytes; not all are 0.
 
     Raises:
-        OSError: It cannot be mapped, or is a file of another kind.
+        OSError: The file cannot be mapped, or is of another kind.
         ValueError: There is not one sealed file of this size.
     """
     if len(files) != 1 or not HAS_FILES:

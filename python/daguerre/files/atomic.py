@@ -77,7 +77,7 @@ def check_writable(target: Name, *, over: Name | None = None) -> None:
         over: See :func:`atomic_path`.
 
     Raises:
-        OutputError: It cannot be written. Call this before hours are spent on a picture.
+        OutputError: The file cannot be written. Call this before hours are spent on a picture.
         UsageError: The command reads this file (``in_use``).
     """
     path = _resolved(target, over)
@@ -92,7 +92,7 @@ def remove(target: Name) -> None:
     """Removes a file, if it exists, and temporary files that killed writers of it left.
 
     Raises:
-        OutputError: It cannot be removed.
+        OutputError: The file cannot be removed.
         UsageError: The command reads this file (``in_use``).
     """
     path = Path(target)

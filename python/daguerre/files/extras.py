@@ -85,7 +85,7 @@ def need(module: str, use: str) -> None:
         use: Task or file that needs it; the message begins with it.
 
     Raises:
-        UsageError: It is not installed; the message says how to install it.
+        UsageError: The package is not installed; the message says how to install it.
     """
     if missing(module):
         raise UsageError(f"{use}: {lack(module)}")

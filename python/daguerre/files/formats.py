@@ -45,8 +45,8 @@ class Format:
         name: Name for messages, such as ``glTF 2.0``.
         kind: Kind of content, such as scene or picture.
         suffixes: Suffixes, lower case, with their dots; or ``ANY``.
-        reads: Reader, called as ``reads(path, **options)``; None: it cannot be read.
-        writes: Writer, called as ``writes(path, value, **options)``; None: it cannot be written.
+        reads: Reader, called as ``reads(path, **options)``; None: write only.
+        writes: Writer, called as ``writes(path, value, **options)``; None: read only.
         takes: Options of reader and writer, besides ``time`` (s) of scenes; None: they check their
             options themselves.
         needs: Package that it needs, and how to install it; empty for a package of an extra.

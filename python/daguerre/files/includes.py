@@ -36,7 +36,7 @@ class Includes:
 
         Args:
             path: The file, without links.
-            size: Its bytes.
+            size: Size of the file, bytes.
             asker: Place that includes it.
 
         Raises:

@@ -43,12 +43,12 @@ def checked_json(
     Args:
         data: The bytes.
         where: The file, for messages.
-        schema: Schema that they must name.
-        members: Members that their JSON object may have.
+        schema: Schema that the bytes must name.
+        members: Members that the JSON object may have.
         make: Function that makes the result from the JSON object.
 
     Raises:
-        InputError: They cannot be used.
+        InputError: The bytes cannot be used.
     """
     root = parse(data, where)
     named = root.need("schema")

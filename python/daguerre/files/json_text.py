@@ -20,7 +20,7 @@ def parse(data: bytes, file: str) -> Item:
     """Parses the bytes of a file.
 
     Raises:
-        InputError: They are not JSON, are nested too deeply, or an object has a member twice.
+        InputError: The bytes are not JSON, are nested too deeply, or an object has a member twice.
     """
     return Item(_value(document(data, f"{file}: JSON"), file), file)
 

@@ -52,8 +52,8 @@ class Packed:
     """A packed value.
 
     Attributes:
-        data: Its text, and its small arrays.
-        large: Its large arrays by their hash.
+        data: Text of the value, and small arrays.
+        large: Large arrays by hash.
     """
 
     data: bytes
@@ -93,7 +93,7 @@ def large_of(data: bytes) -> list[str]:
 
     Raises:
         MismatchError: Another version of Daguerre packed it.
-        InputError: It is damaged.
+        InputError: The bytes are damaged.
     """
     with damage():
         head = json.loads(data[: data.index(b"\n")])

@@ -93,7 +93,7 @@ def size_of(path: Path, most: int | None = None) -> int:
     """Returns the size of a file, bytes, and notes that a library reads it.
 
     Raises:
-        InputError: There is no such file, it is larger than ``most`` bytes, or it is a folder, a
+        InputError: The file does not exist, is larger than ``most`` bytes, or it is a folder, a
             pipe or a device, which might never end.
         UsageError: The command is about to write it.
     """
@@ -152,7 +152,7 @@ def decoded(data: bytes, where: str, encoding: str = "utf-8") -> str:
     """Decodes a text.
 
     Raises:
-        InputError: It is not UTF-8.
+        InputError: The text is not UTF-8.
     """
     try:
         return data.decode(encoding)
@@ -169,7 +169,7 @@ def document(data: bytes, where: str) -> str:
     """Decodes a text that must not be empty.
 
     Raises:
-        InputError: It is empty, or not UTF-8.
+        InputError: The text is empty, or not UTF-8.
     """
     if not data.strip():
         raise InputError(f"{where}: empty file")

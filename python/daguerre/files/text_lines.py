@@ -18,7 +18,7 @@ def statements(
     """Yields place (``file: line 7: word``), first word and other words of each non-empty line.
 
     Raises:
-        InputError: It is not a regular file, is too large, or cannot be read as UTF-8.
+        InputError: The path is not a regular file, is too large, or cannot be read as UTF-8.
     """
     file = Path(path)
     for number, line in enumerate(text_of(file).splitlines(), 1):
@@ -30,6 +30,6 @@ def text_of(file: Path, encoding: str = "utf-8", most: int = MAX_BYTES) -> str:
     """Reads a text of at most ``most`` bytes.
 
     Raises:
-        InputError: It is not a regular file, is too large, or cannot be read.
+        InputError: The path is not a regular file, is too large, or cannot be read.
     """
     return decoded(read_bytes(file, most), str(file), encoding)

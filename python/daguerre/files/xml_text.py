@@ -48,7 +48,7 @@ def parse(data: bytes, file: str) -> Item:
     """Parses the bytes of a file.
 
     Raises:
-        InputError: They are not XML, not OpenCV's, or have features that calibrations do not need.
+        InputError: The bytes are not OpenCV's XML, or have features that calibrations do not need.
     """
     reader = _Reader(file)
     with xml_errors(file):

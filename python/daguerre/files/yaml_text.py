@@ -45,7 +45,7 @@ def parse(data: bytes, file: str) -> Item:
     """Parses the bytes of a file.
 
     Raises:
-        InputError: They are not YAML, or have features that calibrations do not need.
+        InputError: The bytes are not YAML, or have features that calibrations do not need.
     """
     text = document(data, f"{file}: YAML")
     text = _OPENCV_HEAD.sub("", text, count=1)

@@ -32,7 +32,7 @@ def read_bytes(file: Path, most: int = MAX_BYTES) -> Bytes:
         most: Maximum size of the file, bytes.
 
     Raises:
-        InputError: It cannot be read, is too large, or its gzip data are damaged or grow too much.
+        InputError: The file cannot be read or is too large, or gzip data are damaged or too large.
     """
     check_room(size_of(file), str(file), most)
     with opened(file) as stream, reading(file):
@@ -46,7 +46,7 @@ def check_room(size: int, where: str, most: int = MAX_BYTES) -> None:
     """Checks a size before memory of it is taken.
 
     Raises:
-        InputError: It is larger than ``most``, or than the memory that is left.
+        InputError: The size is above ``most``, or above the memory that is left.
     """
     check_size(size, where, most)
     if size <= ALWAYS:

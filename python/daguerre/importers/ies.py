@@ -36,7 +36,7 @@ def read(path: str | os.PathLike[str]) -> LightProfile:
     """Reads a photometric file as a profile of candelas.
 
     Raises:
-        InputError: It cannot be used; the message names file, line and place.
+        InputError: The file cannot be used; the message names file, line and place.
     """
     file = Path(path)
     # Numbers and keywords are ASCII; names of makers come in any encoding.

@@ -95,7 +95,7 @@ def block(metadata: Mapping[str, Any], size: tuple[int, int], srgb: bool) -> byt
     Args:
         metadata: Metadata of the frame.
         size: Width and height of the picture, px.
-        srgb: Whether its colours are sRGB; the standard has no code for other spaces.
+        srgb: Whether colours are sRGB; the standard has no code for other spaces.
     """
     main, exposure = main_tags(metadata), exposure_tags(metadata)
     exposure |= {40961: (SHORT, (1 if srgb else 65535,))}

@@ -86,7 +86,7 @@ class Colors:
 
         Args:
             values: The numbers.
-            in_place: Whether they may be overwritten, which saves memory.
+            in_place: Whether the values may be overwritten, which saves memory.
 
         Returns:
             The same array if nothing is converted, or in place; else a new array.

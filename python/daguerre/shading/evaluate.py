@@ -34,7 +34,7 @@ class Pictures(Protocol):
     """Source of pictures; for example :class:`daguerre.shading.images.Images`."""
 
     def picture(self, place: str, path: str, *, is_data: bool = False) -> Any:
-        """Decodes the picture of an asset path; None: it is missing."""
+        """Decodes the picture of an asset path; None: missing."""
 
     def keep(self, value: object) -> None:
         """Keeps an array alive, so that its identity stays a key."""
@@ -75,7 +75,7 @@ class Arguments:
         return SIZES.get(self.node.type, 0)
 
     def given(self, name: str) -> Value | None:
-        """Value of an input; None: it has none."""
+        """Value of an input; None: no value."""
         found = self.node.inputs.get(name)
         if isinstance(found, Link):
             return self.values.get(name)

@@ -49,7 +49,7 @@ _USD_SPACES = {"raw": Encoding(), "srgb": _SRGB}
 
 
 def file_of(node: Node) -> str | None:
-    """Path of the picture of a node; None: it names none."""
+    """Path of the picture of a node; None: no name."""
     file = node.inputs.get("file")
     if not isinstance(file, Constant) or not isinstance(file.value, str) or not file.value:
         return None
@@ -174,7 +174,7 @@ def sampled(
     *,
     raw: bool = False,
 ) -> Value | None:
-    """Red, green, blue and opacity of the picture in ``file``; None: it is missing.
+    """Red, green, blue and opacity of the picture in ``file``; None: missing.
 
     Args:
         given: The node.

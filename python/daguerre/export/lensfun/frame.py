@@ -20,7 +20,7 @@ class Frame:
     """A frame of the film.
 
     Attributes:
-        long_mm, short_mm: Its sides.
+        long_mm, short_mm: Sides of the frame, mm.
     """
 
     long_mm: float

@@ -33,7 +33,7 @@ class OutgoingFolder:
         """Makes the folder, if it is not there.
 
         Raises:
-            OutputError: It cannot be made.
+            OutputError: The folder cannot be made.
         """
         self._scene = scene_path
         suffix = scene_path.suffix.lower().removeprefix(".")
@@ -64,7 +64,7 @@ class OutgoingFolder:
             Path relative to the scene file, with slashes.
 
         Raises:
-            OutputError: It cannot be written.
+            OutputError: The file cannot be written.
         """
         self._make()
         name = f"{kind}-{content.hexdigest()[:16]}{suffix}"

@@ -33,7 +33,7 @@ class Picture:
 
     Attributes:
         pixels: Shape (H, W, 1) or (H, W, 3), uint8 or float32.
-        srgb: Whether they are sRGB-encoded (8 bits).
+        srgb: Whether the pixels are sRGB-encoded (8 bits).
         wrap: Behaviour beyond the edges, along u and v: repeat, mirror or clamp.
         nearest: Whether magnified texels have sharp edges.
         uv_set: Set of texture coordinates.

@@ -75,7 +75,7 @@ class Output:
 
         Args:
             name: Attribute.
-            kind: Its type.
+            kind: Type of the attribute.
             of: Value of the attribute for a camera at a moment; None: not written.
             *names: Parameters that it depends on.
         """

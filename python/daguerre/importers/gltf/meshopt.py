@@ -22,7 +22,7 @@ NAMES = ("KHR_meshopt_compression", "EXT_meshopt_compression")
 
 
 def packed(item: Item) -> Item | None:
-    """Extension object of a bufferView or buffer; None: it is not compressed."""
+    """Extension object of a bufferView or buffer; None: not compressed."""
     return next((found for name in NAMES if (found := item.extension(name)) is not None), None)
 
 

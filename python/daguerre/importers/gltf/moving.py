@@ -52,25 +52,25 @@ class MotionReader:
         self._animations, self._poses, self._time = animations, poses, time
 
     def material(self, index: int, read: Callable[[Item], Material]) -> PartOverTime | None:
-        """Material over time, read by ``read``; None: it does not change."""
+        """Material over time, read by ``read``; None: constant."""
         channels = self._animations.of("materials", str(index))
         return PartOverTime(self._materials[index], channels, read) if channels else None
 
     def position(self, node: int) -> PositionOverTime | None:
-        """Position of a node over time; None: it does not move."""
+        """Position of a node over time; None: constant."""
         moves = self._poses.moves(node)
         return PositionOverTime(NodeOverTime(self._poses, node)) if moves else None
 
     def instances(
         self, node: int, copies: Matrices | None, worlds: Matrices, *, rigid: bool
     ) -> list[Motion] | None:
-        """Motions of the instances of a mesh at a node; None: they do not change.
+        """Motions of the instances of a mesh at a node; None: constant.
 
         Args:
             node: Index of the node.
             copies: Node from instance, (instances, 4, 4); None: one instance, the node itself.
             worlds: World from instance at the time of reading, (instances, 4, 4).
-            rigid: Whether they ignore the node's transform, as a skin moves them.
+            rigid: Whether a skin moves the mesh, so that the node's transform is ignored.
         """
         moves = self._poses.moves(node) and not rigid
         blinks = self._poses.blinks(node)

@@ -132,7 +132,7 @@ class ShownOverTime(Value):
     Attributes:
         node: Transform of its node.
         blinks: Whether the node's visibility changes.
-        vanishes: Whether its scale may be 0.
+        vanishes: Whether the scale may be 0.
     """
 
     node: NodeOverTime

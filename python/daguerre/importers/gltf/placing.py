@@ -29,11 +29,11 @@ Matrices = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Motion:
-    """Motion of an instance; None: it does not change.
+    """Motion of an instance; None: constant.
 
     Attributes:
         transform: World from mesh.
-        shown: Whether it is visible.
+        shown: Visibility.
         flat: Transform that may be singular, instead of ``transform``.
     """
 
@@ -75,7 +75,7 @@ class Placing:
             material: Index of the material; None: glTF's default.
             worlds: World from mesh, shape (instances, 4, 4).
             name: Name of the instances.
-            moves: Motion of each instance; None: they do not move.
+            moves: Motion of each instance; None: no motion.
         """
         scene = self._scene
         self._instances.spend(len(worlds), node)

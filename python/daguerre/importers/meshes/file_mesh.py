@@ -51,10 +51,10 @@ class FileMesh(FixedArrays):
         Args:
             scene: The scene.
             name: Name for messages; default: that in the file.
-            colors: Whether its colours are used.
+            colors: Whether vertex colours are used.
 
         Raises:
-            InputError: Its numbers do not fit together.
+            InputError: The arrays do not fit together.
         """
         return scene.add_mesh(
             self.positions,

@@ -33,7 +33,7 @@ class Property:
     """A number of each row of an element, or a list of numbers.
 
     Attributes:
-        name: Its name.
+        name: Name of the property.
         type: NumPy's code of the type, without byte order.
         counted: Code of the type of the length of a list; empty for a single number.
     """
@@ -53,7 +53,7 @@ class Element:
     """A table of the file: vertices, faces or something else.
 
     Attributes:
-        name: Its name.
+        name: Name of the element.
         count: Number of rows.
         properties: Columns in the order of the file.
     """

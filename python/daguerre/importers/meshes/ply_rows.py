@@ -40,7 +40,7 @@ class Rows:
     """Rows of an element in a file.
 
     Args:
-        element: Its row of the header.
+        element: Element of the header.
         data: Bytes of the file.
         begin: Where the rows begin.
         order: Byte order, "<" or ">".

@@ -21,7 +21,7 @@ class NotANumberError(ValueError):
     """A word that is not a number.
 
     Attributes:
-        line: Its line in the text, from 0.
+        line: Line of the word in the text, from 0.
         wanted: Words for an error: the wanted kind of number.
         word: The word, for messages.
     """

@@ -63,7 +63,7 @@ class Document:
 
     Raises:
         InputError: A file is no scene of Mitsuba; the message names file, line, column and element.
-        UsageError: It has no parameter of a name in ``define``.
+        UsageError: The file lacks a parameter of ``define``.
     """
 
     def __init__(self, file: Path, files: Files, define: Mapping[str, str]) -> None:
@@ -118,7 +118,7 @@ def _check_depth(root: Node) -> None:
     """Checks that objects are not inside themselves, nor too deep, by way of references.
 
     Raises:
-        InputError: They are.
+        InputError: An object contains itself, or objects are nested too deeply.
     """
     height: dict[int, int] = {}
     waiting: list[tuple[Node, bool]] = [(root, False)]

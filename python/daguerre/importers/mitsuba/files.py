@@ -66,7 +66,7 @@ class Files:
         """File of a name; None: there is no such file.
 
         Raises:
-            InputError: It may not be read, or is no file.
+            InputError: The path may not be read, or is no file.
         """
         for folder in self._folders:
             found = self._real(folder, name, entry)
@@ -83,7 +83,7 @@ class Files:
         """Where a name would be, in the folder that comes first.
 
         Raises:
-            InputError: It may not be read.
+            InputError: The file may not be read.
         """
         path = self._real(self._folders[0], name, entry)
         self._check(path, name, entry)

@@ -21,7 +21,7 @@ class Entry:
         line: Line on which it begins.
         column: Column in which it begins.
         label: The element for messages, such as ``<float name="fov">``.
-        used: Whether it had an effect on the scene.
+        used: Whether the element had an effect on the scene.
         noted: Whether a note names it, or something around it.
     """
 

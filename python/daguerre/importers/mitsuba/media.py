@@ -128,7 +128,7 @@ class Media:
         return Grid(DensityGrid(np.ones((1, 1, 1), np.float32), placed), (1.0, 1.0, 1.0)), ""
 
     def _of_file(self, volume: Node, local: Matrix) -> Grid | None:
-        """Grid of a file; None: it is missing."""
+        """Grid of a file; None: missing."""
         volume.use()
         volume.skip("filter_type", "wrap_mode", "accel", "raw", "max_value")
         files = self._context.document.files_of(volume)

@@ -197,7 +197,7 @@ class Node:
         """The only nested object of some kinds; None: no nested object.
 
         Raises:
-            InputError: There are several.
+            InputError: There is more than one.
         """
         found = self.nested(*kinds)
         if len(found) > 1:

@@ -76,7 +76,7 @@ def field_of_view(node: Node, aspect: float) -> float:
     """Horizontal field of view, radians.
 
     Raises:
-        InputError: It is not within 0 and 180 degrees.
+        InputError: The angle is not within 0 and 180 degrees.
     """
     if not node.has("fov"):
         text = node.text("focal_length", "50mm").strip().removesuffix("mm")

@@ -59,7 +59,7 @@ class Spectra:
         """Colour or spectrum of a property, which is no texture; None, and a note: no such file.
 
         Raises:
-            InputError: It is none.
+            InputError: The property is no colour or spectrum.
         """
         found.take()
         try:
@@ -156,7 +156,7 @@ def sampled(wavelengths: object, values: object, entry: Entry) -> Spectrum:
     """Spectrum of samples.
 
     Raises:
-        InputError: They are no spectrum.
+        InputError: The values are no spectrum.
     """
     nm = np.asarray(wavelengths, np.float64)
     row = np.asarray(values, np.float64)

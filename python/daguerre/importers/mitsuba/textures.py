@@ -77,7 +77,7 @@ class Textures:
 
         Args:
             node: Element with the property.
-            name: Its name.
+            name: Name of the property.
             default: Colour where it has none.
             most: Most that a texture of factors holds.
         """
@@ -145,7 +145,7 @@ class Textures:
         return _capped(color)
 
     def painted(self, node: Node, name: str) -> Painted | None:
-        """Colours of the mesh in a property; None: it is something else."""
+        """Colours of the mesh in a property; None: another value."""
         found = node.find(name)
         value = None if found is None else found.value
         if found is None or not isinstance(value, Node) or value.plugin != "mesh_attribute":

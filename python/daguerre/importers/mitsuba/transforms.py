@@ -155,7 +155,7 @@ def uv_part(matrix: Matrix) -> tuple[float, float, float, float, float, float]:
 
 
 def product(steps: Sequence[tuple[str, Attributes]], entries: Sequence[Entry]) -> Matrix:
-    """Matrix of all steps, each acts after the previous steps.
+    """Matrix of all steps; each acts after the previous steps.
 
     Raises:
         InputError: A step is wrong, or the product is not finite.
@@ -173,7 +173,7 @@ def rigid(matrix: Matrix, node: Node, notes: Notes) -> Matrix:
     """Rotation and translation of a transform, without its scale or, with a note, its mirror.
 
     Raises:
-        InputError: It flattens, or shears.
+        InputError: The transform flattens or shears.
     """
     made = orthogonal(matrix, node)
     if mirrors(made):
@@ -191,7 +191,7 @@ def orthogonal(matrix: Matrix, node: Node) -> Matrix:
     """Rotation, mirror and translation of a transform, without its scale.
 
     Raises:
-        InputError: It flattens, or shears.
+        InputError: The transform flattens or shears.
     """
     axes_, place = matrix[:3, :3], matrix[:3, 3]
     lengths = np.linalg.norm(axes_, axis=0)

@@ -43,7 +43,7 @@ def needed(element: Element, entry: Entry, *names: str) -> list[str]:
     """Attributes of an element, which must have exactly these.
 
     Raises:
-        InputError: It has not.
+        InputError: The element lacks an attribute, or has another.
     """
     known(element, entry, *names)
     for name in names:

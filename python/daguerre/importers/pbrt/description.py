@@ -80,7 +80,7 @@ def named(names: Mapping[str, Made], name: str, place: Place, what: str) -> Made
     """Returns a definition.
 
     Raises:
-        InputError: There is none of this name.
+        InputError: No definition has this name.
     """
     if name not in names:
         place.fail(f"wanted a {what} that is defined, got {name[:60]!r}{suggest(name[:60], names)}")

@@ -59,8 +59,8 @@ class Directive:
     """A directive with its arguments.
 
     Attributes:
-        name: Its name.
-        place: Its place.
+        name: Name of the directive.
+        place: Place of the directive.
         strings: Strings after the name; for ``ActiveTransform`` its word.
         numbers: Numbers after them.
         parameters: Parameters after them.

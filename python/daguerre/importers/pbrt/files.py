@@ -51,7 +51,7 @@ class Files:
         """Opens the first file.
 
         Raises:
-            InputError: It cannot be read.
+            InputError: The file cannot be read.
         """
         self._open.append(Path(os.path.realpath(path)))
         return Lexer(self._source(path), self)
@@ -114,7 +114,7 @@ class Files:
         return self._folder.base / name if missing else self._folder.resolve(item)
 
     def _path(self, item: Item) -> Path | None:
-        """Path of a name; None: it is within the folders, and no file."""
+        """Path of a name; None: no file within the folders."""
         name = item.text().replace("\\", "/")
         try:
             path = Path(os.path.realpath(self._folder.base / name))

@@ -113,7 +113,7 @@ class Lexer:
         """Reads the value of a parameter: a token, or a list in brackets.
 
         Raises:
-            InputError: There is none, the list does not end, or it mixes kinds.
+            InputError: The value is missing, the list does not end, or it mixes kinds.
         """
         token = self.token()
         if token is None or token == b"]":

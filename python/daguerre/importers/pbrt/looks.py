@@ -53,7 +53,7 @@ class Looks:
         """Look of a shape's material.
 
         Raises:
-            InputError: It is not defined, or wrong.
+            InputError: The material is undefined or wrong.
         """
         material = shape.state.material
         if material is None:
@@ -75,8 +75,8 @@ class Looks:
         Args:
             shape: The shape.
             look: Look of its material.
-            mask: Its mask.
-            emission: Its light.
+            mask: Mask of the shape.
+            emission: Light of the shape.
             slope: Factor on the slopes of its bumps.
         """
         slope = float(f"{slope:.3g}") if look.bump is not None and look.normals is None else 1.0

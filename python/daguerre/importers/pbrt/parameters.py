@@ -101,7 +101,7 @@ class Parameters:
         return [p for p in self.given if p.name not in self._asked or self._named[p.name] is not p]
 
     def find(self, name: str, *types: str) -> Parameter | None:
-        """Returns the parameter of a name; None: it is not given.
+        """Returns the parameter of a name; None: not given.
 
         Raises:
             InputError: The parameter has a type other than ``types``.
@@ -164,7 +164,7 @@ class Parameters:
         return [] if found is None else found.texts
 
     def numbers(self, name: str, count: int | None = None) -> FloatArray | None:
-        """Reads numbers, shape (N,); None: they are not given."""
+        """Reads numbers, shape (N,); None: not given."""
         found = self.find(name, "float", "integer")
         if found is None:
             return None
@@ -173,7 +173,7 @@ class Parameters:
         return _check(found, found.numbers)
 
     def integers(self, name: str, low: int, high: int) -> NDArray[np.int64] | None:
-        """Reads whole numbers within limits, shape (N,); None: they are not given."""
+        """Reads whole numbers within limits, shape (N,); None: not given."""
         found = self.find(name, "integer")
         if found is None:
             return None
@@ -185,7 +185,7 @@ class Parameters:
         return whole
 
     def points(self, name: str, *types: str) -> FloatArray | None:
-        """Reads points or vectors, shape (N, 2) or (N, 3); None: they are not given."""
+        """Reads points or vectors, shape (N, 2) or (N, 3); None: not given."""
         found = self.find(name, *types)
         if found is None:
             return None

@@ -19,7 +19,7 @@ class Source:
 
     Attributes:
         name: Path, for messages.
-        data: Its bytes.
+        data: Bytes of the file.
     """
 
     name: str

@@ -64,7 +64,7 @@ class Placing:
             mesh: Index of the mesh.
             material: Index of its material.
             inner: Transform of the shape in its object, or in the world.
-            spots: Its places.
+            spots: Places of the mesh.
 
         Raises:
             InputError: There are too many instances.

@@ -32,7 +32,7 @@ class Baked:
 
     Attributes:
         pixels: Shape (H, W, 3), float32, row 0 on top.
-        mapping: Its mapping.
+        mapping: Mapping of the picture.
         period: Size in s and t that it spans.
         filter: ``linear`` or ``nearest``.
         wrap: ``repeat`` or ``clamp``.

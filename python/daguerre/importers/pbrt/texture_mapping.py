@@ -83,7 +83,7 @@ def mapping_of(made: Made, version: int) -> Mapping:
     """Reads the mapping of a texture; planes of pbrt-v3 are in the world.
 
     Raises:
-        InputError: It is not known, or a parameter is wrong.
+        InputError: The mapping is unknown, or a parameter is wrong.
     """
     parameters = made.parameters
     kind = parameters.text("mapping", "uv")

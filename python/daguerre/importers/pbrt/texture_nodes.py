@@ -38,7 +38,7 @@ class Image:
     Attributes:
         pixels: Shape (H, W, C), uint8 or float32, row 0 on top.
         curve: ``srgb``, or the exponent of its values.
-        mapping: Its place on surfaces.
+        mapping: Mapping to surfaces.
         wrap: Values beyond its edges: repeat, clamp or black.
         filter: ``linear`` or ``nearest``.
         scale: Factor.

@@ -95,7 +95,7 @@ class Textures:
 
         Args:
             place: Place of the directive that names it.
-            name: Its name.
+            name: Name of the file.
             srgb: Whether bytes are encoded by sRGB's curve.
         """
         found = self._images.picture(place, name, is_data=not srgb)

@@ -69,7 +69,7 @@ def inverse(matrix: Matrix, place: Place) -> Matrix:
     """Inverse of a transform.
 
     Raises:
-        InputError: There is none.
+        InputError: The matrix is singular.
     """
     try:
         made = np.linalg.inv(matrix)

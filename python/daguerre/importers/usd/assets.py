@@ -36,7 +36,7 @@ class Assets:
             name: Path of the asset, anchored to its layer.
 
         Raises:
-            InputError: It leaves the folders.
+            InputError: The asset is outside of the folders.
         """
         if SCHEME.match(name):
             raise InputError(
@@ -58,7 +58,7 @@ class Assets:
         """Returns the file of an anchored asset path, which need not exist.
 
         Raises:
-            InputError: It leaves the folders.
+            InputError: The asset is outside of the folders.
         """
         return Path(self.check(place, name))
 

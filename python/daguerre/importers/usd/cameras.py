@@ -78,8 +78,8 @@ def _made(transform: Any, values: dict[str, Any], read: Checked, *, named: bool)
 
     Args:
         transform: World from camera, constant or over time.
-        values: Its other parameters.
-        read: Its attributes, for messages.
+        values: Other parameters of the camera.
+        read: Attributes of the camera, for messages.
         named: Whether an attribute of ours names the mode ``manual``.
     """
     try:
@@ -147,7 +147,7 @@ def _stop(read: Checked) -> dict[str, Any]:
 
 
 def _without_unset(focus: object) -> Any:
-    """Focus distance without the moments at which it is unset; None: it is never set."""
+    """Focus distance without the moments at which it is unset; None: never set."""
     if not isinstance(focus, Keys):
         return focus or None
     pairs = [

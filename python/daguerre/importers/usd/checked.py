@@ -26,7 +26,7 @@ class Checked:
 
     Args:
         prim: The prim.
-        stage: Its stage.
+        stage: Facts of the stage.
         notes: Notes of the reader.
     """
 

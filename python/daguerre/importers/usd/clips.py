@@ -58,7 +58,7 @@ class Clips:
         only part of them, the widest range and the smallest step of all count.
 
         Raises:
-            InputError: There are too many.
+            InputError: There are too many times.
         """
         ranges = list(self._ranges)
         if self._partial and all(self._parts.values()):

@@ -83,11 +83,11 @@ def check_count(stack: Stack, file: str) -> None:
     """Checks the number of prims of a stage.
 
     Args:
-        stack: Its layers.
+        stack: Layers of the stage.
         file: File, for messages.
 
     Raises:
-        InputError: There may be more than memory holds; or references are nested too deeply.
+        InputError: The prims may exceed the memory, or references are nested too deeply.
     """
     most, left = MAX_PRIMS, memory.left_bytes()
     if left is not None:
@@ -219,7 +219,7 @@ class _Composed:
         """Place in the chain that an arc leads back to: the same prim, an ancestor or a descendant.
 
         Raises:
-            InputError: It leads below itself through an implied arc, where USD cuts no loop, and
+            InputError: The arc leads below itself by an implied arc, where USD cuts no loop, and
                 may nest prims without end.
         """
         at, where = path, stack

@@ -33,7 +33,7 @@ class Nested:
         """Values nested in a value that are no dictionaries, each once in all calls.
 
         Raises:
-            DamageError: It is nested too deeply, or holds itself, or too many values.
+            DamageError: The value is nested too deeply, contains itself, or has too many values.
         """
         self._size(rep, 0)
         found, self._plain = sorted(self._plain), set()

@@ -36,14 +36,14 @@ def check_crate(data: memoryview, file: str) -> bool:
     """Checks a binary layer.
 
     Args:
-        data: Its bytes.
+        data: Bytes of the layer.
         file: File, for messages.
 
     Returns:
-        Whether it names files in values.
+        Whether the layer names files in values.
 
     Raises:
-        InputError: It states more than its bytes can hold, or nests values too deeply.
+        InputError: The layer states more than its bytes can hold, or nests values too deeply.
     """
     try:
         return _Crate(data, file).check()

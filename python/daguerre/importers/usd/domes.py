@@ -115,7 +115,7 @@ def read_panorama(path: Path, notes: Notes) -> Picture:
         notes: Receives a note if its colours are converted.
 
     Raises:
-        InputError: It cannot be read.
+        InputError: The picture cannot be read.
     """
     name = str(path)
     if not Ar.IsPackageRelativePath(name):

@@ -26,7 +26,7 @@ class Copies:
     """Copies of a prototype.
 
     Attributes:
-        prototype: Its prim.
+        prototype: Prim of the prototype.
         transforms: Instancer from prototype's parent, shape (N, 4, 4).
         moving: The same over time; None if they rest.
     """
@@ -43,7 +43,7 @@ def read_copies(prim: Usd.Prim, clock: Clock, notes: Notes) -> list[Copies]:
     """Reads the visible copies of an instancer, by prototype.
 
     Raises:
-        InputError: Its arrays do not fit together, or a number is not finite.
+        InputError: The arrays do not fit together, or a number is not finite.
     """
     instancer = UsdGeom.PointInstancer(prim)
     where = f"{clock.file}: {prim.GetPath()}"

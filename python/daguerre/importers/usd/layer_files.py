@@ -25,7 +25,7 @@ def check_file(path: Path, file: str) -> bool:
         file: File, for messages.
 
     Returns:
-        Whether it may name files by expressions, or files inside of packages.
+        Whether the layer may name files by expressions, or files inside of packages.
 
     Raises:
         InputError: The file is no ordinary file, is damaged, or is nested too deeply.

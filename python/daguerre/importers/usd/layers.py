@@ -137,8 +137,8 @@ class Layers:
         """Opens a layer; None: no such layer.
 
         Args:
-            name: Its name for USD.
-            real: Its file, or a place inside of a package.
+            name: Name of the layer for USD.
+            real: File of the layer, or a path inside of a package.
         """
         if not self._check_file(real):
             return None

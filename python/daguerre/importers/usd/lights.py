@@ -78,7 +78,7 @@ class Lamp:
         """A length of the light at the scene's time, at least 0, in the prim's units.
 
         Raises:
-            InputError: It is beyond the limits of a scene.
+            InputError: The length is beyond the limits of a scene.
         """
         found = abs(self.still(f"inputs:{name}"))
         if found >= MAX_SIZE:

@@ -61,8 +61,8 @@ class Shape:
     Attributes:
         prim: The prim.
         points: Points, or points over time.
-        surface: Its polygons.
-        flipped: Whether it is left-handed.
+        surface: Polygons of the mesh.
+        flipped: Whether the polygons are left-handed.
         begun: Positions and normals of the surface's vertices at the scene's time.
         rest: Points before a skin moved them, to which the normals of the file belong; or None.
     """

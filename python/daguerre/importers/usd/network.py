@@ -63,7 +63,7 @@ class Networks:
         self._notes = notes
 
     def graph(self, material: UsdShade.Material) -> Graph | None:
-        """Graph of a material; None: it has no surface.
+        """Graph of a material; None: no surface.
 
         Raises:
             InputError: A value is wrong, or connections never end; the message names the prim.

@@ -33,7 +33,7 @@ def stop_of(camera: Camera) -> float | None:
 
 
 def exposed_stop(camera: Camera) -> float | None:
-    """F-stop that the lens of a camera has; None: it has no iris."""
+    """F-stop that the lens of a camera has; None: no iris."""
     own = stop_of(camera)
     if own is not None:
         return own or None

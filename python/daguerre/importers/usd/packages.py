@@ -41,7 +41,7 @@ def entries_of(whole: mmap.mmap | memoryview, file: str) -> list[Entry]:
         file: File, for messages.
 
     Raises:
-        InputError: It is damaged, or a file in it is compressed or encrypted.
+        InputError: The package is damaged, or a file in it is compressed or encrypted.
     """
     found = _heads(whole, file)
     told = _directory(whole, file)

@@ -108,9 +108,9 @@ class Placing:
         Args:
             mesh: Index from ``Scene.add_mesh``.
             material: Index from ``Scene.add_material``.
-            spots: Its places.
+            spots: Places of the mesh.
             name: Node of its prim, if the places have none.
-            shown: Whether it is visible, constant or over time.
+            shown: Visibility, constant or over time.
         """
         self.spend(len(spots), f"/{name}")
         scene, node, still, moving = self._scene, spots.name or name, spots.still, spots.moving

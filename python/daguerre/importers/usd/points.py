@@ -40,7 +40,7 @@ def read_points(schema: UsdGeom.PointBased, clock: Clock, notes: Notes) -> Array
         Shape (N, 3), in the prim's space, or over time.
 
     Raises:
-        InputError: They are not finite.
+        InputError: A number is not finite.
     """
     attribute = schema.GetPointsAttr()
     now = _checked(attribute, attribute.Get(clock.code), clock)

@@ -40,7 +40,7 @@ class Opened:
     Attributes:
         file: File, for messages.
         stage: The stage of USD.
-        clock: Its time codes.
+        clock: Time codes of the stage.
         metres: Length of a scene unit, m.
         root: Scene (m, +y up) from stage, shape (4, 4).
         assets: Files that the stage may read.

@@ -51,7 +51,7 @@ def check_text(data: bytes, file: str) -> bool:
         file: File, for messages.
 
     Returns:
-        Whether it may name files by expressions, or files inside of packages.
+        Whether the layer may name files by expressions, or files inside of packages.
 
     Raises:
         InputError: Brackets are nested too deeply.

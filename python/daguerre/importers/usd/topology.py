@@ -36,7 +36,7 @@ def read_faces(mesh: UsdGeom.Mesh, count: int, clock: Clock, notes: Notes) -> Fa
         notes: Receives a note on faces of fewer than three corners.
 
     Raises:
-        InputError: They do not fit together, or name points that do not exist.
+        InputError: The arrays do not fit together, or an index has no point.
     """
     sizes = clock.integers(mesh.GetFaceVertexCountsAttr())
     vertices = clock.integers(mesh.GetFaceVertexIndicesAttr())

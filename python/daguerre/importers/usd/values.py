@@ -164,7 +164,7 @@ class Clock:
         Args:
             attribute: The attribute.
             convert: Converts a value; the result is a number, a tuple, an array, a flag or a name.
-            large: Whether it is an array with many numbers, which keeps only the samples that the
+            large: Whether the value is a large array, which keeps only the samples that the
                 moments need. All samples decide whether it changes.
         """
         if not attribute:

@@ -90,7 +90,7 @@ def dense(data: Bytes, where: str) -> FileGrid:
         where: Owner, for messages.
 
     Raises:
-        InputError: It is of another version or kind, damaged, or too large.
+        InputError: The grid is of another version or kind, damaged, or too large.
     """
     grid = _record(data, 0, GRID, where)
     _check_kind(grid, where)

@@ -94,7 +94,7 @@ def read_headers(path: Path) -> ExrHeaders:
     """Reads the headers of all parts, and not the whole file.
 
     Raises:
-        InputError: It is not an OpenEXR file, is truncated, or a header is damaged or too long.
+        InputError: The file is not OpenEXR, is truncated, or a header is damaged or too long.
     """
     with opened(path) as stream, reading(path):
         size = os.fstat(stream.fileno()).st_size

@@ -112,7 +112,7 @@ def read_layouts(path: Path, wanted: int | None = None) -> list[Layout]:
         wanted: Number of the only part to check; other parts may be of any kind. None: all parts.
 
     Raises:
-        InputError: It is not an OpenEXR file; or a checked part is deep, subsampled, damaged,
+        InputError: The file is not OpenEXR; or a checked part is deep, subsampled, damaged,
             larger than its file can hold, or of an unknown kind.
     """
     headers = read_headers(path)

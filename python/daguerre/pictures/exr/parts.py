@@ -100,7 +100,7 @@ class PartReader:
         """Checks that ``size`` bytes fit into free memory.
 
         Raises:
-            InputError: They do not fit.
+            InputError: The bytes do not fit.
         """
         if size < _SMALL:
             return

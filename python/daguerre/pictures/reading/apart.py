@@ -31,8 +31,8 @@ def read(
 
     Args:
         source: The picture.
-        kind: Its kind.
-        where: Its place, for messages.
+        kind: Kind of the picture.
+        where: Place of the picture, for messages.
         limit: Most bytes of its pixels.
         straight: Whether alpha is straight; otherwise colours are premultiplied.
 
@@ -40,7 +40,7 @@ def read(
         Pixels in the type of the file, shape (H, W, C); names of channels; EXIF orientation.
 
     Raises:
-        InputError: It cannot be decoded or is too large, or the process crashed or took too long.
+        InputError: The picture cannot be decoded or is too large, or the process failed.
     """
     with TemporaryDirectory(prefix="daguerre-") as folder, source.file(kind.suffixes) as name:
         target = Path(folder, "plain.tif")

@@ -27,7 +27,7 @@ class Kind:
         name: Name of OpenImageIO's plug-in.
         title: Name for messages.
         suffixes: Suffixes that choose this plug-in.
-        mark: Pattern of the first bytes; None: it has none, and its suffix decides.
+        mark: Pattern of the first bytes; None: the suffix decides.
         here: Whether its decoder may run in this process; otherwise it runs in a process apart.
     """
 
@@ -93,7 +93,7 @@ def kind_of(source: Source, where: str) -> Kind:
 
     Args:
         source: The picture.
-        where: Its place, for messages.
+        where: Place of the picture, for messages.
 
     Raises:
         UnknownPicture: It is of another kind.

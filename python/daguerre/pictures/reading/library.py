@@ -61,7 +61,7 @@ def read(name: str, where: str, limit: int, *, floats: bool = False) -> tuple[ND
 
     Args:
         name: File; its suffix chooses the plug-in.
-        where: Its place, for messages.
+        where: Place of the picture, for messages.
         limit: Most bytes of its pixels.
         floats: Return float32: integers scaled to 0 .. 1, premultiplied by alpha; otherwise the
             type of the file, with straight alpha.

@@ -47,7 +47,7 @@ def read(source: Source, where: str, limit: int = MAX_BYTES, *, floats: bool = F
 
     Args:
         source: The picture.
-        where: Its place, for messages.
+        where: Place of the picture, for messages.
         limit: Most bytes of its pixels.
         floats: Return float32: integers scaled to 0 .. 1, premultiplied by alpha; otherwise the
             type of the file, with straight alpha.

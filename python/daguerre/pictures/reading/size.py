@@ -20,11 +20,11 @@ def check_size(
         height: Height, px.
         channels: Number of channels.
         bytes_each: Bytes of a channel of a pixel.
-        where: Its place, for messages.
+        where: Place of the picture, for messages.
         limit: Most bytes of all pixels.
 
     Raises:
-        InputError: It has no pixels, or too many.
+        InputError: The picture has no pixels, or too many.
     """
     if min(width, height, channels) < 1:
         raise InputError(f"{where}: image size: wanted at least 1x1, got {width}x{height}")

@@ -19,7 +19,7 @@ class Source:
 
     Args:
         path: File that holds it.
-        data: Its bytes instead, if it is within another file.
+        data: Bytes of the picture, if it is within another file.
         name: Name that it has there; its suffix decides between kinds without a mark.
 
     Raises:

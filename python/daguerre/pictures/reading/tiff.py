@@ -42,10 +42,10 @@ def check(source: Source, where: str, limit: int) -> bool:
     """Checks the size of the first picture, and whether it is plain.
 
     Returns:
-        Whether it is plain, with all of its pixels within the file: it may be decoded here.
+        Whether the file is plain, with all pixels within the file: it may be decoded here.
 
     Raises:
-        InputError: It is too large.
+        InputError: The picture is too large.
     """
     tags = read_tags(source, where)
     width, height, channels = _size(tags)

@@ -51,7 +51,7 @@ def parse(data: bytes, file: str) -> Element:
     """Parses the bytes of a file.
 
     Raises:
-        InputError: They are not XML, too large or too deep, or have a document type.
+        InputError: The bytes are not XML, too large or too deep, or have a document type.
     """
     if len(data) > MAX_BYTES:
         raise InputError(f"{file}: XML: wanted at most {MAX_BYTES} bytes, got {len(data)}")
