@@ -234,9 +234,9 @@ class Glb:
         """Writes the .glb: a header, the JSON chunk, the binary chunk (glTF 2.0, section 4.4)."""
         self.json |= {"scene": 0, "scenes": [{"nodes": self.roots}]}
         self.binary += b"\0" * (-len(self.binary) % 4)
-        own = [{"byteLength": len(self.binary)}] if self.binary else []
-        if own or self.fallbacks:
-            self.json["buffers"] = [*own, *self.fallbacks]
+        main = [{"byteLength": len(self.binary)}] if self.binary else []
+        if main or self.fallbacks:
+            self.json["buffers"] = [*main, *self.fallbacks]
         text = json.dumps(self.json, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
         body = struct.pack("<I4s", len(text), b"JSON") + text

@@ -50,8 +50,8 @@ class Loss:
         """Reflectance of their base that looks like ours, (...) to (...); it may be above 1."""
         if not self._nonlinear:
             return np.asarray(base / self._passed * (1 - self._theirs) / (1 - self._ours))
-        seen = base / self._passed / (1 - base * self._ours)
-        return np.asarray(seen / (1 + seen * self._theirs))
+        reflected = base / self._passed / (1 - base * self._ours)
+        return np.asarray(reflected / (1 + reflected * self._theirs))
 
     def bare(self, base: Numbers) -> Numbers:
         """Reflectance of a diffuse surface that is as bright as our base in diffuse light."""
@@ -81,11 +81,11 @@ def reflectance(eta: float, alpha: float, distribution: Distribution, correlated
         distribution: Distribution of the facets.
         correlated: Whether masking and shadowing go by the same heights; else they are independent.
     """
-    cosine, up, seen, weight = _facets(alpha, distribution)
-    beyond = 2 * seen * up - cosine
+    cosine, up, facing, weight = _facets(alpha, distribution)
+    beyond = 2 * facing * up - cosine
     here, there = (_hidden(np.maximum(c, 1e-6), alpha, distribution) for c in (cosine, beyond))
     both = 1 + here + there if correlated else (1 + here) * (1 + there)
-    light = np.where(beyond > 0, _fresnel(seen, eta) * weight / both, 0)
+    light = np.where(beyond > 0, _fresnel(facing, eta) * weight / both, 0)
     return float(2 * light.mean())
 
 
@@ -96,11 +96,11 @@ def transmittance(eta: float, alpha: float, distribution: Distribution) -> float
     The integral of ``reflectance`` with 1 - F and bent directions; masking and shadowing are
     independent.
     """
-    cosine, up, seen, weight = _facets(alpha, distribution)
-    bent = np.sqrt(1 - (1 - seen**2) / eta**2)
-    below = cosine / eta + up * (bent - seen / eta)
+    cosine, up, facing, weight = _facets(alpha, distribution)
+    bent = np.sqrt(1 - (1 - facing**2) / eta**2)
+    below = cosine / eta + up * (bent - facing / eta)
     here, there = (_hidden(np.maximum(c, 1e-6), alpha, distribution) for c in (cosine, below))
-    passed = (1 - _fresnel(seen, eta)) * weight / ((1 + here) * (1 + there))
+    passed = (1 - _fresnel(facing, eta)) * weight / ((1 + here) * (1 + there))
     return float(2 * np.where(below > 0, passed, 0).mean())
 
 
@@ -117,8 +117,8 @@ def _facets(alpha: float, distribution: Distribution) -> tuple[Numbers, ...]:
     square = 1 / steeper - 1 if distribution == "ggx" else -np.log(steeper)
     up = 1 / np.sqrt(1 + alpha**2 * square)
     across = np.sqrt(1 - up**2) * np.cos(np.pi * turn)
-    seen = np.maximum(cosine * up + np.sqrt(1 - cosine**2) * across, 0)
-    return cosine, up, seen, 2 * root * seen / up
+    facing = np.maximum(cosine * up + np.sqrt(1 - cosine**2) * across, 0)
+    return cosine, up, facing, 2 * root * facing / up
 
 
 def _hidden(cosine: Numbers, alpha: float, distribution: Distribution) -> Numbers:

@@ -36,8 +36,8 @@ def write_exposure(output: Output) -> None:
 
 
 def _time(camera: Camera) -> float:
-    own = shutter.shutter_time(camera)
-    return own if camera.exposure_time is None else camera.exposure_time
+    shutter_s = shutter.shutter_time(camera)
+    return shutter_s if camera.exposure_time is None else camera.exposure_time
 
 
 def _stop(camera: Camera) -> float:

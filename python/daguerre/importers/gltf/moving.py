@@ -90,8 +90,8 @@ class MotionReader:
     def _is_flat(self, place: NodeOverTime) -> bool:
         """Whether an instance is flat at a key, and not only between keys."""
         times = place.breaks(-np.inf, np.inf)
-        some = np.array([self._time, *times[:: 1 + len(times) // _MAX_LOOKS]])
-        return bool((ranks(place.many(some)[:, :3, :3]) == 2).any())
+        looked_at = np.array([self._time, *times[:: 1 + len(times) // _MAX_LOOKS]])
+        return bool((ranks(place.many(looked_at)[:, :3, :3]) == 2).any())
 
     def camera(self, camera: Camera, item: Item, node: Item) -> Camera:
         """Returns the camera of a node with its motion."""

@@ -42,9 +42,9 @@ class Poses(Value):
         self._shown: dict[int, list[Channel]] = {}
         for node in animations.parts("nodes"):
             channels = animations.of("nodes", str(node))
-            own = [c for c in channels if c.tokens[-1] in _PLACE and len(c.tokens) == 3]
+            moving = [c for c in channels if c.tokens[-1] in _PLACE and len(c.tokens) == 3]
             shown = [c for c in channels if c.is_flag]
-            self._own |= {node: own} if own else {}
+            self._own |= {node: moving} if moving else {}
             self._shown |= {node: shown} if shown else {}
         self._known: OrderedDict[tuple[int, bytes], Matrix] = OrderedDict()
 

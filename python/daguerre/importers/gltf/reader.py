@@ -186,12 +186,12 @@ class _Reader:
         self.scene.add_node(name, position, motion=self.moving.position(placed.index))
         mesh, camera = item.get("mesh"), item.get("camera")
         light = item.extension("KHR_lights_punctual")
-        seen = placed.visible or self.poses.blinks(placed.index)
-        if mesh is not None and seen:
+        shown = placed.visible or self.poses.blinks(placed.index)
+        if mesh is not None and shown:
             self._mesh(item, placed, name)
         if camera is not None:
             self._camera(self.cameras[camera.index(len(self.cameras), "cameras")], placed, name)
-        if light is not None and seen:
+        if light is not None and shown:
             chosen = self.lights[light.need("light").index(len(self.lights), "lights")]
             self._light(chosen, placed, name)
 

@@ -50,10 +50,10 @@ class Lines:
         begins, ends = self._begins[lines] - first, self._ends[lines] + 1 - first
         out = self._data[first:last].copy()
         if len(lines) <= lines[-1] - lines[0]:  # other lines are between them
-            change = np.zeros(len(out) + 1, np.int8)
-            change[begins] += 1
-            change[ends] -= 1
-            out = out[np.cumsum(change[:-1], dtype=np.int8) > 0]
+            steps = np.zeros(len(out) + 1, np.int8)
+            steps[begins] += 1
+            steps[ends] -= 1
+            out = out[np.cumsum(steps[:-1], dtype=np.int8) > 0]
         sizes = ends - begins
         words = np.cumsum(sizes) - sizes + self._words[lines] - first - begins
         out[words] = _SPACE
@@ -120,7 +120,7 @@ def _blank_comments(text: Bytes) -> None:
     begins = np.flatnonzero(text == _HASH)
     ends = np.flatnonzero(text == _END)
     behind = ends[np.searchsorted(ends, begins)]
-    change = np.zeros(len(text) + 1, np.int32)
-    np.add.at(change, begins, 1)
-    np.add.at(change, behind, -1)
-    text[np.cumsum(change[:-1]) > 0] = _SPACE
+    steps = np.zeros(len(text) + 1, np.int32)
+    np.add.at(steps, begins, 1)
+    np.add.at(steps, behind, -1)
+    text[np.cumsum(steps[:-1]) > 0] = _SPACE

@@ -156,13 +156,13 @@ def _with_faces(mesh: FileMesh, element: Element, rows: Rows, where: str, notes:
     _note_others(element, {*used, *colored}, "faces", notes)
     corners = check_corners(faces.values, len(mesh.positions), where)
     sizes = faces.sizes
-    kept = None if uv is None else uv[0]
+    corner_uv = None if uv is None else uv[0]
     if len(sizes) and sizes.min() < 3:
         whole = sizes >= 3
         notes.add("faces with fewer than 3 corners are left out", int((~whole).sum()))
         inside = np.repeat(whole, sizes)
         corners, sizes = corners[inside], sizes[whole]
-        kept = None if kept is None else kept[inside]
+        corner_uv = None if corner_uv is None else corner_uv[inside]
         colors = None if colors is None else freeze_in_place(colors[whole])
     triangles = not len(sizes) or (sizes[0] == 3 and bool((sizes == 3).all()))
     whole_mesh = replace(
@@ -171,7 +171,7 @@ def _with_faces(mesh: FileMesh, element: Element, rows: Rows, where: str, notes:
         sizes=None if triangles else freeze_in_place(sizes.astype(np.uint32)),
         face_colors=colors,
     )
-    return whole_mesh if kept is None else with_corner_uv(whole_mesh, kept)
+    return whole_mesh if corner_uv is None else with_corner_uv(whole_mesh, corner_uv)
 
 
 def _corner_uv(

@@ -166,13 +166,13 @@ class _Reader:
                 found = Property(name, _TYPES[kind])
             case _:
                 self._fail(f"a property of {', '.join(_TYPES)}", line)
-        own = self._elements[-1][2]
-        if any(p.name == name for p in own):
+        properties = self._elements[-1][2]
+        if any(p.name == name for p in properties):
             self._fail("each property once", f"{name} again")
         self._properties += 1
         if self._properties > _MOST_PROPERTIES:
             self._fail(f"at most {_MOST_PROPERTIES} properties", "more")
-        own.append(found)
+        properties.append(found)
 
     def _fail(self, wanted: str, got: str) -> NoReturn:
         raise InputError(f"{self._where}: line {self.line}: wanted {wanted}, got {short(got)}")

@@ -110,8 +110,8 @@ class Emitters:
     def _project(self, node: Node, shine: Shine, widest: float) -> None:
         """Adds lamps that project a picture."""
         pose, mirrored = self._pose(node)
-        seen = _mirror_image(shine) if mirrored else shine
-        for intensity, profile in lamps(seen, widest):
+        projected = _mirror_image(shine) if mirrored else shine
+        for intensity, profile in lamps(projected, widest):
             light = PointLight(intensity, name=node.id, profile=profile)
             self._scene.add_light(light, pose)
         self._notes.add("edges of a projected picture are softened by 1/640 of its angle")

@@ -62,8 +62,8 @@ class Look:
     def reliefs(self) -> frozenset[Relief]:
         """Reliefs of the look, and of the looks that it blends."""
         parts = () if self.blend is None else (self.blend.first, self.blend.second)
-        own = frozenset(() if self.relief is None else (self.relief,))
-        return own.union(*(part.reliefs for part in parts))
+        direct = frozenset(() if self.relief is None else (self.relief,))
+        return direct.union(*(part.reliefs for part in parts))
 
     def with_relief(self, relief: Relief, made: dict[int, Look] | None = None) -> Look:
         """Returns the look with another relief; a blend hands it to its parts.

@@ -142,11 +142,11 @@ def inside_out(mesh: FileMesh) -> FileMesh:
         ends = np.repeat(np.cumsum(mesh.sizes.astype(np.int64)), mesh.sizes)
         begins = ends - np.repeat(mesh.sizes.astype(np.int64), mesh.sizes)
         order = begins + ends - 1 - np.arange(count)
-    own = count != len(mesh.positions)
+    distinct = count != len(mesh.positions)
     by_corner = {
         key: value[order]
         for key in ("normals", "uv", "colors")
-        if (value := getattr(mesh, key)) is not None and own and len(value) == count
+        if (value := getattr(mesh, key)) is not None and distinct and len(value) == count
     }
     turned = replace(mesh, corners=mesh.corners[order], **by_corner)
     return turned if turned.normals is None else replace(turned, normals=-turned.normals)

@@ -213,12 +213,12 @@ def leave_out(node: Node, notes: Notes, sentence: str) -> None:
 
 
 def _mark(top: Node) -> None:
-    waiting, seen = [top], set[int]()
+    waiting, visited = [top], set[int]()
     while waiting:
         node = waiting.pop()
-        if id(node) in seen:
+        if id(node) in visited:
             continue
-        seen.add(id(node))
+        visited.add(id(node))
         node.entry.noted = True
         for item in node.properties:
             for entry in (item.entry, *item.parts):
@@ -229,13 +229,13 @@ def _mark(top: Node) -> None:
 
 def unread(root: Node, notes: Notes) -> None:
     """Notes unused properties and objects below an object."""
-    seen: set[int] = set()
+    visited: set[int] = set()
     waiting = [root]
     while waiting:
         node = waiting.pop()
-        if id(node) in seen or (node.entry.noted and not node.entry.used):
+        if id(node) in visited or (node.entry.noted and not node.entry.used):
             continue
-        seen.add(id(node))
+        visited.add(id(node))
         for item in reversed(node.properties):
             value = item.value
             if isinstance(value, Node) and value.entry.used:

@@ -60,20 +60,20 @@ def lie_against(
     points = positions.astype(np.float64)[index]
     before, after = _neighbours(len(index), sizes)
     across = np.cross(points[after] - points, points[before] - points)
-    own = len(normals) == len(index) != len(positions)
-    return float((across * (normals if own else normals[index])).sum()) < 0
+    by_corner = len(normals) == len(index) != len(positions)
+    return float((across * (normals if by_corner else normals[index])).sum()) < 0
 
 
 def _neighbours(count: int, sizes: NDArray[np.uint32] | None) -> tuple[Integers, Integers]:
     """Corners before and after each corner of its face."""
-    own = np.arange(count)
+    corner = np.arange(count)
     if sizes is None:
-        begins, lengths = own - own % 3, np.full(count, 3)
+        begins, lengths = corner - corner % 3, np.full(count, 3)
     else:
         ends = np.cumsum(sizes.astype(np.int64))
         begins = np.repeat(ends - sizes, sizes)
         lengths = np.repeat(sizes.astype(np.int64), sizes)
-    place = own - begins
+    place = corner - begins
     return begins + (place - 1) % lengths, begins + (place + 1) % lengths
 
 

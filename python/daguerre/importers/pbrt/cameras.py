@@ -80,8 +80,8 @@ def mirror_of(made: Made | None) -> Array:
     """
     if made is None:
         return _TURN.copy()
-    seen = made.state.transform.start @ _TURNS.get(made.kind, _TURN)
-    return np.eye(4) if np.linalg.det(seen[:3, :3]) > 0 else _TURN.copy()
+    camera = made.state.transform.start @ _TURNS.get(made.kind, _TURN)
+    return np.eye(4) if np.linalg.det(camera[:3, :3]) > 0 else _TURN.copy()
 
 
 def read_camera(
@@ -103,10 +103,10 @@ def read_camera(
         ledger.note(made.place, "a camera that is scaled to zero is left out")
         return None
     eye = Eye(made, film, size, unit_of(axes), described.version, files, ledger)
-    seen = reader(eye)
-    fields = {"transform": pose, **_shutter(eye), **_exposure(eye, seen), **seen.fields}
-    if seen.ahead:
-        fields["transform"] = _moved_ahead(pose, seen.ahead)
+    lens = reader(eye)
+    fields = {"transform": pose, **_shutter(eye), **_exposure(eye, lens), **lens.fields}
+    if lens.ahead:
+        fields["transform"] = _moved_ahead(pose, lens.ahead)
     ledger.use(made.place)
     ledger.tell_unread(made.parameters, made.place, made.kind)
     try:
@@ -157,12 +157,12 @@ def _shutter(eye: Eye) -> dict[str, Any]:
     return {"shutter_time": end - begin, "shutter_offset": begin * 24}
 
 
-def _exposure(eye: Eye, seen: Seen) -> dict[str, Any]:
+def _exposure(eye: Eye, lens: Seen) -> dict[str, Any]:
     """Factor of pbrt on a picture, as EV, and the white."""
     begin, end = _times(eye)
-    if seen.timed and end == begin:
+    if lens.timed and end == begin:
         eye.made.place.fail("shutteropen, shutterclose: the two times must differ")
-    gain = eye.film.gain * seen.weight * (end - begin if seen.timed else 1.0)
+    gain = eye.film.gain * lens.weight * (end - begin if lens.timed else 1.0)
     return {
         "exposure_compensation": round(math.log2(gain), _DIGITS) + 0.0,
         "white_balance": eye.film.white,

@@ -165,11 +165,11 @@ class Interpreter:
             directive.place.fail(
                 f"target: wanted {wanted}, got {target[:40]!r}{suggest(target[:40], TARGETS)}"
             )
-        own = directive.parameters.inheriting((), self._state.color_space).given
+        given = directive.parameters.inheriting((), self._state.color_space).given
         before: tuple[Parameter, ...] = self._state.attributes.get(target, ())
-        names = {parameter.name for parameter in own}
-        kept = tuple(parameter for parameter in before if parameter.name not in names)
-        attributes = {**self._state.attributes, target: (*own, *kept)}
+        names = {parameter.name for parameter in given}
+        inherited = tuple(parameter for parameter in before if parameter.name not in names)
+        attributes = {**self._state.attributes, target: (*given, *inherited)}
         self._set(directive.place, attributes=attributes)
 
     # Transforms ---------------------------------------------------------------------------------

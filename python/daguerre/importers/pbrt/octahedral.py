@@ -103,8 +103,8 @@ def _looked_up(image: NDArray[np.float32], turn: Array, rows: int) -> NDArray[np
         )
         s, t = square_of(ways @ turn)
         x, y = (np.minimum((place * size).astype(np.int64), size - 1) for place in (s, t))
-        seen = image[y, x].reshape(count, _SAMPLES, columns, _SAMPLES, 3)
-        made[row : row + count] = seen.mean(axis=(1, 3))
+        samples = image[y, x].reshape(count, _SAMPLES, columns, _SAMPLES, 3)
+        made[row : row + count] = samples.mean(axis=(1, 3))
     return made
 
 

@@ -89,12 +89,12 @@ class Parameters:
 
     def inheriting(self, inherited: Sequence[Parameter], color_space: str) -> Parameters:
         """Adds parameters of ``Attribute``; sets the color space of the directive's parameters."""
-        own = self.given
+        given = self.given
         if color_space != "srgb":
-            own = tuple(
+            given = tuple(
                 Parameter(p.type, p.name, p.values, p.place, color_space) for p in self.given
             )
-        return Parameters(own, inherited)
+        return Parameters(given, inherited)
 
     def unread(self) -> list[Parameter]:
         """Own parameters that nothing asked for."""

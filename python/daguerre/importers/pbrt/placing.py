@@ -86,8 +86,8 @@ class Placing:
         if not moves.any():
             self._scene.add_instances(mesh, material, still, name=spots.name)
             return
-        kept = [value for value, gone in zip(values, lost, strict=True) if not gone]
-        for world, value in zip(still, kept, strict=True):
+        drawn = [value for value, gone in zip(values, lost, strict=True) if not gone]
+        for world, value in zip(still, drawn, strict=True):
             motion = value if isinstance(value, Keys) else None
             if motion and (ranks(np.array(motion.values)[:, :3, :3]) < 3).any():
                 self._ledger.notes.add(f"a moving shape is not drawn while it is {FLAT}")

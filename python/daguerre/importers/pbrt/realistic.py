@@ -127,6 +127,6 @@ def _simple_share(focused: Focused, diameter: float) -> float:
     order, rear = focused.lens.first_order(), focused.lens.surfaces[-1].semi_diameter
     pupil, vertex = order.exit_pupil, float(focused.lens.vertices[-1])
     opened = min(diameter / (2 * order.stop_semi_diameter), 1.0)
-    seen = (focused.film_z_mm - vertex) / (focused.film_z_mm - pupil.z)
-    side = abs(pupil.diameter * opened * seen)
+    scale = (focused.film_z_mm - vertex) / (focused.film_z_mm - pupil.z)
+    side = abs(pupil.diameter * opened * scale)
     return float(math.pi / 4 * (side / (side + 2 * _WIDENED * (rear or 0.0))) ** 2)

@@ -203,6 +203,6 @@ def evaluated(node: Node, u: Array, v: Array, common: Mapping | None) -> Array:
 
 
 def _uv(mapping: Mapping, u: Array, v: Array) -> tuple[Array, Array]:
-    own = mapping if isinstance(mapping, UvMapping) else _WHOLE
-    s, t = own.at(u.astype(np.float64), v.astype(np.float64))
+    uv = mapping if isinstance(mapping, UvMapping) else _WHOLE
+    s, t = uv.at(u.astype(np.float64), v.astype(np.float64))
     return s.astype(np.float32), t.astype(np.float32)

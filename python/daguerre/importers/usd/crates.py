@@ -50,8 +50,8 @@ def check_crate(data: memoryview, file: str) -> bool:
     except InputError:  # a ValueError, too
         raise
     except (struct.error, IndexError, ValueError, DamageError) as error:
-        told = str(error) if isinstance(error, DamageError) else "it ends too early"
-        raise InputError(f"{file}: damaged binary layer: {told}") from None
+        reason = str(error) if isinstance(error, DamageError) else "it ends too early"
+        raise InputError(f"{file}: damaged binary layer: {reason}") from None
 
 
 class _Crate:

@@ -68,13 +68,13 @@ class Layout:
         starts = np.cumsum(self.counts) - self.counts
         place = np.arange(total) - np.repeat(starts, self.counts)
         rows, curves = np.flatnonzero(place < np.repeat(fits, self.counts)), fits > 0
-        kept = {
+        valid = {
             name: values[rows] if len(values) == total else values[curves]
             for name, values in given.items()
         }
         moving = is_dynamic(points)
         chosen = ChosenOverTime(points, rows) if moving else points[rows]  # type: ignore[arg-type,index]
-        return chosen, fits[curves], kept
+        return chosen, fits[curves], valid
 
     def _between(self, values: Array) -> Array | None:
         knots = [self._knots(int(count)) for count in self.counts]
@@ -82,10 +82,12 @@ class Layout:
             return None
         made, start = [], 0
         for count, at in zip(self.counts, knots, strict=True):
-            own = values[start : start + len(at)]
+            rows = values[start : start + len(at)]
             start += len(at)
             each = np.arange(int(count))
-            made.append(np.stack([np.interp(each, at, own[:, k]) for k in range(own.shape[1])], 1))
+            made.append(
+                np.stack([np.interp(each, at, rows[:, k]) for k in range(rows.shape[1])], 1)
+            )
         return np.concatenate(made).astype(np.float32)
 
     def _knots(self, count: int) -> Counts:

@@ -106,14 +106,14 @@ def _is_same(
         return False
     moving = [camera.motion[name] for name in sources if name in camera.motion]
     if not isinstance(value, Keys):
-        own = of(camera)
-        return not moving and own is not None and math.isclose(own, value, rel_tol=_SINGLE)
+        current = of(camera)
+        return not moving and current is not None and math.isclose(current, value, rel_tol=_SINGLE)
     return any(
-        isinstance(own, Keys)
-        and own.interpolation == value.interpolation
-        and np.array_equal(own.times, value.times)
-        and np.allclose(own.values, value.values, rtol=_SINGLE, atol=0)
-        for own in moving
+        isinstance(keyed, Keys)
+        and keyed.interpolation == value.interpolation
+        and np.array_equal(keyed.times, value.times)
+        and np.allclose(keyed.values, value.values, rtol=_SINGLE, atol=0)
+        for keyed in moving
     )
 
 

@@ -106,8 +106,8 @@ class _Reader:
         spins = bool(turning) and turning == self._samples(self._attribute("angularVelocities"))
         codes = sorted({*starts, *turning, *self._samples(self._attribute("scales"))})
         codes = codes or [float(self._clock.code.GetValue())]
-        kept = self._clock.around(codes)
-        self._check(codes[kept])
+        needed = self._clock.around(codes)
+        self._check(codes[needed])
         counts = [self._found(places, _base(starts, c) if flies else c) for c in codes]
         if any(count != self._count for count in counts):
             now = float(self._clock.code.GetValue())
@@ -120,7 +120,7 @@ class _Reader:
                     "the scene's time"
                 )
         else:
-            codes = codes[kept]
+            codes = codes[needed]
         return self._made(codes, starts if flies else [], turning if spins else [])
 
     def _made(self, codes: list[float], starts: list[float], turning: list[float]) -> Crowd:
@@ -128,29 +128,33 @@ class _Reader:
         turns = [self._turn(code, turning) for code in codes]
         scales = [self._each(self._attribute("scales"), code, 3, 1.0) for code in codes]
         parts = [*zip(*flights, strict=True), *zip(*turns, strict=True), scales]
-        place, speed, change, turn, spin, scale = (
+        place, velocity, acceleration, turn, spin, scale = (
             None if any(sample is None for sample in part) else np.stack(part) for part in parts
         )
         assert place is not None
         assert turn is not None
         assert scale is not None
         times = np.array([self._clock.seconds(code) for code in codes])
-        return Crowd(times, place, turn, scale, speed, change, spin, self._clock.holds)
+        return Crowd(times, place, turn, scale, velocity, acceleration, spin, self._clock.holds)
 
     def _flight(self, code: float, starts: list[float]) -> tuple[Array, Any, Any]:
         """Positions at a time code, and velocities and accelerations if they fly."""
         places, base = self._attribute("positions"), _base(starts, code)
         place = self._each(places, base, 3, None)
-        speed = self._optional("velocities", base) if starts else None
-        if speed is None:
+        velocity = self._optional("velocities", base) if starts else None
+        if velocity is None:
             return place, None, None
         dt = self._clock.seconds(code - base)
-        changes = self._attribute("accelerations")
-        follows = self._samples(changes) == starts
-        change = self._optional("accelerations", base) if follows else None
-        if change is None:
-            return place + dt * speed, speed, None
-        return place + dt * (speed + 0.5 * dt * change), speed + dt * change, change
+        accelerations = self._attribute("accelerations")
+        follows = self._samples(accelerations) == starts
+        acceleration = self._optional("accelerations", base) if follows else None
+        if acceleration is None:
+            return place + dt * velocity, velocity, None
+        return (
+            place + dt * (velocity + 0.5 * dt * acceleration),
+            velocity + dt * acceleration,
+            acceleration,
+        )
 
     def _turn(self, code: float, turning: list[float]) -> tuple[Array, Any]:
         """Quaternions at a time code, and angular velocities if they spin."""

@@ -98,14 +98,14 @@ class Layers:
 
     def _follow(self, stack: Stack) -> None:
         """Opens the layers that a stack names."""
-        seen, waiting = {stack.root.identifier}, [stack.root]
+        visited, waiting = {stack.root.identifier}, [stack.root]
         while waiting:
             layer = waiting.pop()
             names = self._names[layer.identifier]
             for name in layer.subLayerPaths:
                 found = self._named(layer, name, stack.variables)
-                if found is not None and found.identifier not in seen:
-                    seen.add(found.identifier)
+                if found is not None and found.identifier not in visited:
+                    visited.add(found.identifier)
                     waiting.append(found)
             below = {}
             for name in names.files():

@@ -79,12 +79,14 @@ class Lighting:
         if make is None:
             self._notes.add(f"a light of type {prim.GetTypeName() or 'unknown'} is left out")
             return
-        kept = np.array([without_scale(world) is not None for world in spots.still], bool)
-        if not kept.all():
-            self._notes.add("a light whose prim is scaled to zero is left out", int((~kept).sum()))
-        if kept.any():
+        regular = np.array([without_scale(world) is not None for world in spots.still], bool)
+        if not regular.all():
+            self._notes.add(
+                "a light whose prim is scaled to zero is left out", int((~regular).sum())
+            )
+        if regular.any():
             lamp = Lamp(prim, self._opened.clock, self._notes)
-            make(visit, _part(spots, np.flatnonzero(kept)), lamp)
+            make(visit, _part(spots, np.flatnonzero(regular)), lamp)
 
     def glowing(self, visit: Visit, spots: Spots, meshes: Sequence[int], material: int) -> int:
         """Material of a mesh light: the bound material, with the emission of the light.
@@ -99,13 +101,13 @@ class Lighting:
         if lamp.normalized and len(list(_by_size(spots))) > 1:
             self._notes.add("copies of a normalized mesh light are as bright as the first one")
         size = sum(self._area(mesh, spots.still[0]) for mesh in meshes) if lamp.normalized else 1.0
-        own = self._scene.materials[material]
-        if glows(own):  # USD's default: the glow of the material tints the light
+        bound = self._scene.materials[material]
+        if glows(bound):  # USD's default: the glow of the material tints the light
             self._notes.add("a mesh light with an emissive material emits the light only")
-            own = replace(own, kind=unlit(own.kind))
+            bound = replace(bound, kind=unlit(bound.kind))
         emission: Any = lamp.emission(size, True)
         profile = self._profile(lamp)
-        return self._scene.add_material(replace(own, emission=emission, profile=profile))
+        return self._scene.add_material(replace(bound, emission=emission, profile=profile))
 
     def finish(self) -> None:
         """Sets the environment from all domes."""
@@ -170,15 +172,15 @@ class Lighting:
         if radius == 0 or lamp.flag("treatAsPoint"):
             self._points(visit, spots, lamp, radius)
             return
-        for some in _by_size(spots):
-            scale = _scale_of(some.still[0])
-            if np.ptp(scale) > 1e-4 * scale.max() or _changes_scale(some, scale):
-                self._mesh(visit, some, lamp, ball(radius))
+        for group in _by_size(spots):
+            scale = _scale_of(group.still[0])
+            if np.ptp(scale) > 1e-4 * scale.max() or _changes_scale(group, scale):
+                self._mesh(visit, group, lamp, ball(radius))
                 continue
             real = float(radius * scale.mean())
             emission = lamp.emission(4 * np.pi * real**2, visit.shown)
             make = _maker(SphereLight, radius=real, name=visit.name, profile=self._profile(lamp))
-            self._lamps(some, make, emission)
+            self._lamps(group, make, emission)
 
     def _points(self, visit: Visit, spots: Spots, lamp: Lamp, radius: float) -> None:
         """Points of the mean intensity of a ball: a quarter of its area times its luminance.
@@ -186,12 +188,12 @@ class Lighting:
         Without a size it is 1 cd for each unit of intensity, if it is not normalized.
         """
         solid = ball(radius)
-        for some in _by_size(spots):
-            size = 0.0 if solid is None else area(solid.positions, solid.triangles, some.still[0])
+        for group in _by_size(spots):
+            size = 0.0 if solid is None else area(solid.positions, solid.triangles, group.still[0])
             bare = 0.25 if lamp.normalized else 1.0
             emission = times(lamp.emission(size, visit.shown), size / 4 if size > 0 else bare)
             make = _maker(PointLight, name=visit.name, profile=self._profile(lamp))
-            self._lamps(some, make, emission)
+            self._lamps(group, make, emission)
 
     def _rectangle(self, visit: Visit, spots: Spots, lamp: Lamp) -> None:
         solid = rectangle(lamp.size("width"), lamp.size("height"))
@@ -227,14 +229,14 @@ class Lighting:
         if solid is None:
             self._notes.add("a light without area is left out")
             return
-        for some in _by_size(spots) if lamp.normalized else (spots,):
-            size = area(solid.positions, solid.triangles, some.still[0])
+        for group in _by_size(spots) if lamp.normalized else (spots,):
+            size = area(solid.positions, solid.triangles, group.still[0])
             emission = lamp.emission(size, True)
             if emission != _DARK:
                 mesh = self._mesh_of(visit, solid)
                 made = self._material(visit.path, emission, path)
                 material = self._scene.add_material(replace(made, profile=self._profile(lamp)))
-                self._placing.add(mesh, material, some, visit.name, visit.shown)
+                self._placing.add(mesh, material, group, visit.name, visit.shown)
 
     def _mesh_of(self, visit: Visit, solid: ShapeMesh) -> int:
         if visit.source not in self._meshes:
@@ -264,8 +266,8 @@ def _maker(kind: Any, **fields: Any) -> Callable[[Any], Any]:
 
 def glows(material: Material) -> bool:
     """Whether a material emits light itself."""
-    own = material.kind.emissive if isinstance(material.kind, Gltf) else _DARK
-    return max(*material.emission, *own) > 0
+    emissive = material.kind.emissive if isinstance(material.kind, Gltf) else _DARK
+    return max(*material.emission, *emissive) > 0
 
 
 def unlit(kind: object) -> Any:
@@ -304,7 +306,7 @@ def _changes_scale(spots: Spots, scale: Matrix) -> bool:
     """Whether the scale of a moving light changes over time."""
     for world in (spots.moving or ())[:_SOME_KEYS]:
         if not isinstance(world, np.ndarray):
-            some = list(world.breaks(-MAX_TIME, MAX_TIME))[:_SOME_KEYS]
-            if not all(np.allclose(_scale_of(world.at(t)), scale, rtol=1e-4) for t in some):
+            times_s = list(world.breaks(-MAX_TIME, MAX_TIME))[:_SOME_KEYS]
+            if not all(np.allclose(_scale_of(world.at(t)), scale, rtol=1e-4) for t in times_s):
                 return True
     return False

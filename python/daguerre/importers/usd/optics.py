@@ -34,9 +34,9 @@ def stop_of(camera: Camera) -> float | None:
 
 def exposed_stop(camera: Camera) -> float | None:
     """F-stop that the lens of a camera has; None: no iris."""
-    own = stop_of(camera)
-    if own is not None:
-        return own or None
+    stop = stop_of(camera)
+    if stop is not None:
+        return stop or None
     usual = float(CAMERA["f_stop"].usual)
     if camera.lens is None or camera.lens in IDEAL:
         return usual

@@ -60,13 +60,13 @@ def _between(value: Dynamic, a: float, b: float, miss: Miss, depth: int) -> list
     middle = 0.5 * (a + b)
     quarters = [a + share * (b - a) for share in (0.25, 0.75)]
     first, last = value.at(a), value.at(b)
-    straight = miss(first, value.at(middle), last) <= _WORTH and all(
+    is_linear = miss(first, value.at(middle), last) <= _WORTH and all(
         miss(p, value.at(t), q) <= _WORTH
         for p, t, q in zip(
             (first, value.at(middle)), quarters, (value.at(middle), last), strict=True
         )
     )
-    if straight or depth == 0 or not a < middle < b:
+    if is_linear or depth == 0 or not a < middle < b:
         return []
     left, right = (
         _between(value, a, middle, miss, depth - 1),

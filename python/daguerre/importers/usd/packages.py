@@ -44,12 +44,12 @@ def entries_of(whole: mmap.mmap | memoryview, file: str) -> list[Entry]:
         InputError: The package is damaged, or a file in it is compressed or encrypted.
     """
     found = _heads(whole, file)
-    told = _directory(whole, file)
+    listed = _directory(whole, file)
     names = {entry.name for entry in found}
-    if len(names) < len(found) or len(told) != len(found):
+    if len(names) < len(found) or len(listed) != len(found):
         raise _fault(file, "a name for each file and a directory of all")
     for entry in found:
-        info = told.get(entry.name)
+        info = listed.get(entry.name)
         if info is None or (info.file_size, info.compress_type) != (entry.end - entry.begin, 0):
             raise _fault(file, f"a directory that agrees on {short(entry.name)}")
     return found

@@ -53,15 +53,18 @@ def read_points(schema: UsdGeom.PointBased, clock: Clock, notes: Notes) -> Array
     if any(count != len(now) for count in _counts(attribute, codes)):
         notes.add("points whose number changes over time are shown at rest, as at the scene's time")
         return now
-    kept = clock.around(codes)
-    samples = _samples(attribute, codes[kept], clock)
+    needed = clock.around(codes)
+    samples = _samples(attribute, codes[needed], clock)
     others = (
         _checked(attribute, attribute.Get(Usd.TimeCode(code)), clock)
-        for code in (*codes[: kept.start], *codes[kept.stop :])
+        for code in (*codes[: needed.start], *codes[needed.stop :])
     )
     if all(np.array_equal(sample, now) for sample in itertools.chain(samples, others)):
         return now
-    times, how = [clock.seconds(code) for code in codes[kept]], "step" if clock.holds else "linear"
+    times, how = (
+        [clock.seconds(code) for code in codes[needed]],
+        "step" if clock.holds else "linear",
+    )
     if clock.borrows:
         return Keys(np.array(times), tuple(samples), how)
     return keys(zip(times, samples, strict=True), how)
@@ -78,16 +81,16 @@ def _ballistic(schema: UsdGeom.PointBased, clock: Clock) -> Ballistic | None:
         return None
     slower = schema.GetAccelerationsAttr()
     slows = clock.codes(slower, single=True) == codes
-    times, kept = np.array([clock.seconds(code) for code in codes]), clock.around(codes)
+    times, needed = np.array([clock.seconds(code) for code in codes]), clock.around(codes)
     if len({*counts}) > 1:  # points come and go: the points of one sample fly
         i = max(int(np.searchsorted(times, clock.time, side="right")) - 1, 0)
         codes, counts, times = codes[i : i + 1], counts[i : i + 1], times[i : i + 1]
-        kept = slice(0, 1)
+        needed = slice(0, 1)
     attributes = [points, velocities]
     if slows and _counts(slower, codes) == counts:
         attributes.append(slower)
-    made = [tuple(_samples(given, codes[kept], clock)) for given in attributes]
-    return Ballistic(times[kept], made[0], made[1], made[2] if len(made) > 2 else None)
+    made = [tuple(_samples(given, codes[needed], clock)) for given in attributes]
+    return Ballistic(times[needed], made[0], made[1], made[2] if len(made) > 2 else None)
 
 
 def _counts(attribute: Usd.Attribute, codes: list[float]) -> list[int]:

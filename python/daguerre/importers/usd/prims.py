@@ -137,9 +137,9 @@ class Walk:
 def _visible(parent: bool | Shown, imageable: UsdGeom.Imageable, clock: Clock) -> bool | Shown:
     if parent is False:
         return False
-    own = clock.value(imageable.GetVisibilityAttr(), lambda token: token != "invisible")
-    if own is None or own is True:
+    authored = clock.value(imageable.GetVisibilityAttr(), lambda token: token != "invisible")
+    if authored is None or authored is True:
         return parent
-    if own is False:
+    if authored is False:
         return False
-    return Shown((*(parent.flags if isinstance(parent, Shown) else ()), own))
+    return Shown((*(parent.flags if isinstance(parent, Shown) else ()), authored))

@@ -160,10 +160,10 @@ class _Reader:
 
     def _smooth_faces(self, visits: list[Visit]) -> int:
         """Number of faces of all subdivision meshes, which share a budget of detail."""
-        total, seen = 0, set()
+        total, counted = 0, set()
         for visit in visits:
-            if visit.prim.IsA(UsdGeom.Mesh) and visit.source not in seen:
-                seen.add(visit.source)
+            if visit.prim.IsA(UsdGeom.Mesh) and visit.source not in counted:
+                counted.add(visit.source)
                 mesh = UsdGeom.Mesh(visit.prim)
                 if scheme_of(mesh, self._clock) != "none":
                     total += len(mesh.GetFaceVertexCountsAttr().Get(self._clock.code) or ())
@@ -306,8 +306,8 @@ class _Reader:
                 continue
             camera = read_camera(visit.prim, world, facts, self._notes)
             if camera is not None:
-                own = str(visit.prim.GetName())
-                name = own if names[own] == 1 else visit.name.replace("/", ".")
+                base = str(visit.prim.GetName())
+                name = base if names[base] == 1 else visit.name.replace("/", ".")
                 self.scene.add_camera(name, camera, alias=visit.path)
 
     def _group(self, visits: list[Visit], firsts: list[int]) -> None:

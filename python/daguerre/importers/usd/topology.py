@@ -51,14 +51,14 @@ def read_faces(mesh: UsdGeom.Mesh, count: int, clock: Clock, notes: Notes) -> Fa
     if vertices.size and not (vertices.min() >= 0 and vertices.max() < count):
         worst = vertices.max() if vertices.min() >= 0 else vertices.min()
         raise InputError(f"{where}: faceVertexIndices: wanted 0 .. {count - 1}, got {worst}")
-    kept = sizes >= 3
-    if not kept.all():
-        notes.add("a face of fewer than three corners is left out", int((~kept).sum()))
+    valid = sizes >= 3
+    if not valid.all():
+        notes.add("a face of fewer than three corners is left out", int((~valid).sum()))
     holes = clock.integers(mesh.GetHoleIndicesAttr())
     hidden = np.zeros(len(sizes), bool)
     hidden[holes[(holes >= 0) & (holes < len(sizes))]] = True
-    corners = np.flatnonzero(np.repeat(kept, sizes))
-    ids = np.flatnonzero(kept)
+    corners = np.flatnonzero(np.repeat(valid, sizes))
+    ids = np.flatnonzero(valid)
     stated = len(sizes), len(vertices)
     return Faces(count, sizes[ids], vertices[corners], ids, corners, stated, hidden[ids])
 

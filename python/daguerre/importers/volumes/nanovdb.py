@@ -153,9 +153,9 @@ def _unblosced(packed: Bytes, size: int, where: str) -> Bytes:
     while size:
         chunk, at = _chunk(packed, at, where)
         wanted = min(size, _BLOSC_CHUNK)
-        told = chunk[:16].view("<u4").tolist() if len(chunk) >= 16 else [0, 0, 0, 0]
-        if (told[1], told[3]) != (wanted, len(chunk)):
-            raise InputError(f"{where}: wanted {wanted} bytes packed by BLOSC, got {told[1]}")
+        head = chunk[:16].view("<u4").tolist() if len(chunk) >= 16 else [0, 0, 0, 0]
+        if (head[1], head[3]) != (wanted, len(chunk)):
+            raise InputError(f"{where}: wanted {wanted} bytes packed by BLOSC, got {head[1]}")
         try:
             parts.append(blosc.decompress(chunk.tobytes()))
         except (ValueError, TypeError, blosc.blosc_extension.error) as error:

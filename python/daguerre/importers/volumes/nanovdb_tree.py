@@ -216,9 +216,9 @@ class _Tree:
         leaves = values.reshape([n for count in size[::-1] // 8 for n in (count, 8)])
         for rows, corners in self._some_leaves():
             x, y, z = ((corners - first) // 8).T
-            own = rows["values"].reshape(-1, 8, 8, 8).transpose(0, 3, 2, 1)
+            cells = rows["values"].reshape(-1, 8, 8, 8).transpose(0, 3, 2, 1)
             inside = ((corners >= first) & (corners < last)).all(axis=1)  # else inactive
-            leaves[z[inside], :, y[inside], :, x[inside], :] = own[inside]
+            leaves[z[inside], :, y[inside], :, x[inside], :] = cells[inside]
         x, y, z = (slice(*pair) for pair in zip(low - first, high - first, strict=True))
         return np.ascontiguousarray(values[z, y, x])
 
@@ -262,8 +262,8 @@ class _Tree:
         places = max(len(self._data) - _LEAF.itemsize + 1, 0)
         all_of_them: NDArray[np.void] = np.ndarray((places,), _LEAF, self._data, strides=(1,))
         for begin in range(0, len(self._leaves), _SOME):
-            some = slice(begin, begin + _SOME)
-            yield all_of_them[self._leaves[some]], self._corners[some]
+            part = slice(begin, begin + _SOME)
+            yield all_of_them[self._leaves[part]], self._corners[part]
 
 
 @dataclass(frozen=True, eq=False)
