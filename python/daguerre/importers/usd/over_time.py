@@ -110,7 +110,7 @@ def pose(world: Sequence[Any] | NDArray[np.float64]) -> tuple[Any, Any]:
     """Position, and rotation as a quaternion (x, y, z, w), of a rigid transform (4, 4)."""
     m = np.asarray(world, np.float64)
     r = m[:3, :3]
-    # Of four formulas for the quaternion, use the largest divisor (Shepperd 1978).
+    # The largest divisor chooses among four formulas for the quaternion (Shepperd 1978).
     four = np.array([r[0, 0] - r[1, 1] - r[2, 2], r[1, 1] - r[0, 0] - r[2, 2],
                      r[2, 2] - r[0, 0] - r[1, 1], r[0, 0] + r[1, 1] + r[2, 2]])  # fmt: skip
     i = int(np.argmax(four))
