@@ -25,7 +25,9 @@ def too_many(room: Path) -> dict[str, float]:
     words, found = rates(files(room))
     most = {name: math.ceil(limit * words / 1000) for name, (_, limit) in PATTERNS.items()}
     return {
-        name: round(rate, 2) for name, rate in found.items() if rate * words > 1000 * most[name]
+        name: round(rate, 2)
+        for name, rate in found.items()
+        if round(rate * words / 1000) > most[name]
     }
 
 
