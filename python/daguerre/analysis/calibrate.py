@@ -137,7 +137,7 @@ def calibrate_all(
 ) -> list[ProjectionFit]:
     """Fits every model that covers the field of the lens; returns the best (by RMS) first.
 
-    Args: as for :func:`calibrate`; ``opencv`` is fitted with 4, 5, 8 and 12 parameters.
+    Args: those of :func:`calibrate`; ``opencv`` is fitted with 4, 5, 8 and 12 parameters.
 
     Raises:
         UsageError: A number is out of range.
