@@ -75,12 +75,11 @@ def files(folder: Path) -> list[Path]:
     return sorted(p for kind in ("*.h", "*.cpp", "*.py") for p in folder.rglob(kind))
 
 
-def rates(paths: list[Path]) -> tuple[int, Mapping[str, float]]:
-    """Counts words, and the occurrences of each pattern in 1,000 of them."""
+def counts(paths: list[Path]) -> tuple[int, Mapping[str, int]]:
+    """Counts words, and the occurrences of each pattern."""
     text = "\n".join(comment for path in paths for comment in comments(path))
     words = len(re.findall(r"[A-Za-z][A-Za-z'-]*", text))
-    counts = {name: len(re.findall(rule, text, re.I)) for name, (rule, _) in PATTERNS.items()}
-    return words, {name: 1000 * count / max(words, 1) for name, count in counts.items()}
+    return words, {name: len(re.findall(rule, text, re.I)) for name, (rule, _) in PATTERNS.items()}
 
 
 def main() -> None:
@@ -92,8 +91,8 @@ def main() -> None:
         ROOT / "python" / "daguerre",
     ]
     for room in rooms:
-        words, found = rates(files(room))
-        each = "  ".join(f"{name} {rate:5.2f}" for name, rate in found.items())
+        words, found = counts(files(room))
+        each = "  ".join(f"{name} {1000 * n / max(words, 1):5.2f}" for name, n in found.items())
         print(f"{room.name:14} {words:6} words  {each}")
 
 

@@ -120,6 +120,17 @@ def test_live_ghosts_have_the_same_bits_on_any_number_of_threads() -> None:
     assert np.array_equal(one, three)
 
 
+@pytest.mark.parametrize(
+    ("lens", "f_stop", "least", "most"),
+    [("double-gauss-50mm-f2", 5.6, 2.9e5, 3.1e5), ("canon-50mm-f0.95", 0.95, 4.5e5, 5.7e5)],
+)
+def test_steep_glass_has_more_arrivals(lens: str, f_stop: float, least: float, most: float) -> None:
+    """Their light differs more, so noise would be higher by as many."""
+    drawer = _core.LiveFlare()
+    live(session(lens, WHITE, f_stop=f_stop), drawer)
+    assert least < drawer.arrivals < most
+
+
 def test_without_a_small_lamp_there_is_no_light() -> None:
     """All is black, and no lamp is counted."""
     made = session("tessar-50mm-f2.8")

@@ -109,6 +109,7 @@ class Page:
     state: dict[str, Any] = field(default_factory=dict)
     refused: list[str] = field(default_factory=list)
     heard: int = 0
+    drawn: int = -1
     values: list[Any] = field(default_factory=list)
     heads: list[dict[str, Any]] = field(default_factory=list)
     bytes: bytes = b""
@@ -133,6 +134,7 @@ class Page:
         self.open = message.get("open", self.open)
         self.state = message.get("state", self.state)
         self.heard += "heard" in message
+        self.drawn = message.get("drawn", self.drawn)
         if "refused" in message:
             self.refused.append(message["refused"])
         if "value" in message:

@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.viewfinder import work
+from daguerre.viewfinder import hub, work
+from daguerre.viewfinder.drawn import Drawn
 from daguerre.viewfinder.stage import Stage
 
 from .chromium import Browser, browser, program
@@ -75,6 +76,24 @@ def drags(page: Browser, seconds: float, turns: int) -> int:
 
 def test_pictures_follow_a_hand_that_does_not_rest(page: Browser) -> None:
     assert drags(page, 15, 5) > 5
+
+
+def test_the_next_turn_comes_while_a_picture_is_developed(
+    page: Browser, server: Live, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    develop = hub.image_of
+    newer: list[bool] = []
+
+    def developed_late(drawn: Drawn, **more: Any) -> Any:
+        number, end = drawn.request.number, time.monotonic() + 0.6  # the page sends after 1 s
+        while server.hub.number == number and time.monotonic() < end:
+            time.sleep(0.01)
+        newer.append(server.hub.number > number)
+        return develop(drawn, **more)
+
+    monkeypatch.setattr(hub, "image_of", developed_late)
+    drags(page, 15, 3)
+    assert any(newer)
 
 
 def test_the_last_move_of_a_drag_is_drawn(page: Browser, server: Live) -> None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 import daguerre as dg
 from daguerre.color.spectra import luminance_of_rgb
 from daguerre.rendering import Cancelled
+from daguerre.rendering.light_plan import FilmPlan
 from daguerre.rendering.live_ghosts import LiveGhosts
 from daguerre.rendering.session import Session
 from daguerre.viewfinder import ghosts
@@ -76,6 +77,21 @@ def first_of(stage: Stage, beside: dict[str, str] | None = None, **turns: str) -
     dials = Dials().turned(turns)
     request = PictureRequest(0, stage, dials, stage.shot(dials), beside=beside)
     return next(Work(request).pictures(lambda step: step()))
+
+
+def test_a_layer_takes_no_memory_for_a_film(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its session draws no samples; making a film takes as long as a small picture."""
+    films: list[FilmPlan] = []
+    make = FilmPlan.film
+
+    def counted(plan: FilmPlan) -> Any:
+        films.append(plan)
+        return make(plan)
+
+    monkeypatch.setattr(FilmPlan, "film", counted)
+    drawn = first_of(stage_of(sunny()))
+    assert drawn.sharp is not None
+    assert [plan.layout.width for plan in films] == [drawn.frame.width]
 
 
 def blocks(light: NDArray[np.float32], size: int = 8) -> NDArray[np.float32]:

@@ -237,6 +237,31 @@ def test_others_watch_and_take_over(server: Live) -> None:
             other.until_rest(2)
 
 
+def test_a_page_turns_on_while_a_picture_is_developed(
+    server: Live, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """That picture is shown all the same."""
+    develop = hub.image_of
+
+    def developed_late(drawn: Any, **more: Any) -> Any:
+        end = time.monotonic() + 5
+        while drawn.request.number == 1 and server.hub.number < 2 and time.monotonic() < end:
+            time.sleep(0.01)
+        return develop(drawn, **more)
+
+    with page(server) as one:
+        one.until_rest(0)
+        monkeypatch.setattr(hub, "image_of", developed_late)
+        one.send(turn={"f_stop": "2"})
+        while one.drawn < 1 and one.heads[-1]["turn"] == 0:
+            one.step()
+        assert (one.drawn, one.heads[-1]["turn"]) == (1, 0)
+        one.send(turn={"f_stop": "4"})
+        one.until_rest(2)
+        assert 1 in {head["turn"] for head in one.heads}
+        assert one.state["readings"]["f_stop"] == 4
+
+
 def test_a_page_that_does_not_answer_gets_one_picture(server: Live) -> None:
     with page(server) as slow:
         slow.acknowledges = False

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 import daguerre._core as _core
 from daguerre.camera import shutter
 from daguerre.camera.overscan import NONE, Overscan
@@ -114,14 +117,35 @@ def core_settings_of(prepared: Prepared) -> _core.RenderSettings:
         return _settings(prepared, prepared.setup, NONE)
 
 
-def film_layout(prepared: Prepared, plan: LightPlan) -> _core.FilmLayout:
-    """Returns the layout of the film, with the layers that the picture needs.
+@dataclass(frozen=True)
+class FilmPlan:
+    """Film that a picture needs; it takes memory when it is made.
+
+    Attributes:
+        layout: Its layout.
+        responses: Responses of its channels; None: it has no channels.
+    """
+
+    layout: _core.FilmLayout
+    responses: NDArray[np.float64] | None
+
+    def film(self) -> _core.Film:
+        """Makes the film."""
+        made = _core.Film(self.layout)
+        if self.responses is not None:
+            made.set_responses(self.responses)
+        return made
+
+
+def plan_film(prepared: Prepared, plan: LightPlan) -> FilmPlan:
+    """Plans the film, with the layers that the picture needs.
 
     Raises:
         InputError: The film would be too large.
     """
     x0, y0, x1, y1 = prepared.crop
     film, waves = prepared.settings.film, prepared.settings.diffraction
+    curves = None if prepared.sensor is None else responses(prepared.sensor)
     layout = _core.FilmLayout(
         width=x1 - x0,
         height=y1 - y0,
@@ -135,18 +159,10 @@ def film_layout(prepared: Prepared, plan: LightPlan) -> _core.FilmLayout:
         objects=bool(film.cryptomatte),
         catchers=prepared.scene.has_catchers,
         bands=film.bands if waves is None else waves.bands,
-        channels=0 if prepared.sensor is None else len(responses(prepared.sensor)),
+        channels=0 if curves is None else len(curves),
     )
     check_film(layout, truth=prepared.settings.truth.moment is not None, scatter=plan.scatter > 0)
-    return layout
-
-
-def new_film(prepared: Prepared, layout: _core.FilmLayout) -> _core.Film:
-    """Makes a film."""
-    made = _core.Film(layout)
-    if prepared.sensor is not None:
-        made.set_responses(responses(prepared.sensor))
-    return made
+    return FilmPlan(layout, curves)
 
 
 def _is_over_plate(prepared: Prepared) -> bool:

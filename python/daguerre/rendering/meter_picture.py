@@ -15,7 +15,7 @@ from daguerre.scene.scene import Scene
 from daguerre.units import numbers
 
 from .film_frame import frame_of
-from .light_plan import film_layout, new_film, plan_light
+from .light_plan import plan_film, plan_light
 from .picture_truth import ground_truth
 from .prepare import Prepared
 
@@ -79,7 +79,7 @@ def meter_picture(prepared: Prepared) -> Frame:
     """Draws the picture of a meter, without flare, scatter, crop or plate."""
     plan = plan_light(prepared, None)
     film, samples = (
-        new_film(prepared, film_layout(prepared, plan)),
+        plan_film(prepared, plan).film(),
         (0, prepared.settings.sampling.most),
     )
     for part in plan.parts:

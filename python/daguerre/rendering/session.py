@@ -29,7 +29,7 @@ from .columns import Columns, add_columns
 from .film_frame import frame_of, set_film_state
 from .film_parts import area
 from .keywords import SettingsKeywords, settings_of
-from .light_plan import film_layout, new_film, plan_light
+from .light_plan import plan_film, plan_light
 from .parameters import TABLE
 from .picture_truth import ground_truth, truth_planes
 from .prepare import prepare
@@ -104,7 +104,7 @@ class Session:
         self.counters = _core.RenderCounters()
         self.ranges: list[tuple[int, int]] = []
         self.round: Round | None = None  # of adaptive sampling, instead of more ranges
-        self._layout = film_layout(prepared, self.light_plan)
+        self._film_plan = plan_film(prepared, self.light_plan)
         self._plate: NDArray[np.float32] | None = None  # background of all frames, made on demand
         self._kernels: Kernels = {}  # of diffraction, cached between frames
         self._torn = False  # a pass was stopped midway: the sums are of no use
@@ -121,7 +121,7 @@ class Session:
 
     @cached_property
     def _film(self) -> _core.Film:
-        return new_film(self.prepared, self._layout)
+        return self._film_plan.film()
 
     def _whole_film(self) -> _core.Film:
         if self._torn:

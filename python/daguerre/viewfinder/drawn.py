@@ -1,4 +1,4 @@
-"""Wishes, and the pictures that are drawn for them."""
+"""Requests, and the pictures that are drawn for them."""
 
 from __future__ import annotations
 
