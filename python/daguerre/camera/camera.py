@@ -25,6 +25,7 @@ from .parameters import CAMERA, FULL_FRAME, MOVABLE
 from .parameters.needs import OPENING
 
 if TYPE_CHECKING:
+    from daguerre.calibration.cameras import CalibratedCameras
     from daguerre.files.source import Source
     from daguerre.lenses import Lens
     from daguerre.sensors import Sensor
@@ -276,8 +277,10 @@ class Camera(Value):
         Raises:
             InputError: The calibration cannot be used; the message names the place in the file.
         """
-        options = {"model": model, "size": size, "rectified": rectified, "unit_m": unit_m}
-        return cls._calibrated("opencv", calibration, camera, pixel_pitch, name=name, **options)
+        found = cls._calibrated(camera, pixel_pitch)
+        return found.from_opencv(
+            calibration, name, model=model, size=size, rectified=rectified, unit_m=unit_m
+        )
 
     @classmethod
     def from_ros(
@@ -293,7 +296,7 @@ class Camera(Value):
         Args: as in :meth:`from_opencv`. ``camera`` has the pose of the first rectified camera of
             the rig. ``rectified`` takes the rectified picture (P) instead of the raw picture.
         """
-        return cls._calibrated("ros", calibration, camera, pixel_pitch, rectified=rectified)
+        return cls._calibrated(camera, pixel_pitch).from_ros(calibration, rectified=rectified)
 
     @classmethod
     def from_kalibr(
@@ -310,8 +313,8 @@ class Camera(Value):
         Args: as in :meth:`from_opencv`. ``camera`` has the pose of the first camera of the chain.
             ``timeshift`` delays the shutter by ``timeshift_cam_imu`` relative to that camera.
         """
-        options = {"name": name, "timeshift": timeshift}
-        return cls._calibrated("kalibr", calibration, camera, pixel_pitch, **options)
+        found = cls._calibrated(camera, pixel_pitch)
+        return found.from_kalibr(calibration, name, timeshift=timeshift)
 
     @classmethod
     def from_colmap(
@@ -328,8 +331,7 @@ class Camera(Value):
         Args: as in :meth:`from_opencv`; ``name`` is the name of the picture. With # in place of a
         number (``IMG_####.jpg``) the camera moves: picture n is at n / fps, s.
         """
-        options = {"name": name, "unit_m": unit_m}
-        return cls._calibrated("colmap", folder, camera, pixel_pitch, **options)
+        return cls._calibrated(camera, pixel_pitch).from_colmap(folder, name, unit_m=unit_m)
 
     @classmethod
     def from_opentrackio(
@@ -345,21 +347,14 @@ class Camera(Value):
         Args: as in :meth:`from_opencv`. Several samples (a list, or a file with a list or one
         sample a line) make keys over time, the first at 0 s.
         """
-        return cls._calibrated("opentrackio", calibration, camera, pixel_pitch, size=size)
+        return cls._calibrated(camera, pixel_pitch).from_opentrackio(calibration, size=size)
 
-    @classmethod
-    def _calibrated(
-        cls,
-        format: str,
-        source: Source | list[Source] | str | os.PathLike[str],
-        camera: Camera | None,
-        pixel_pitch: float | None,
-        **options: Any,
-    ) -> Camera:
-        """Reads a camera from a calibration in a format; ``camera`` gives all other parameters."""
-        from daguerre.calibration.cameras import read_camera
+    @staticmethod
+    def _calibrated(camera: Camera | None, pixel_pitch: float | None) -> CalibratedCameras:
+        """Makers of cameras; ``camera`` gives all other parameters."""
+        from daguerre.calibration.cameras import CalibratedCameras
 
-        return read_camera(format, source, camera, pixel_pitch, **options)
+        return CalibratedCameras(camera, pixel_pitch)
 
     def frozen_at(self, time: float) -> Camera:
         """Returns the camera frozen at a time, s: a copy without motion."""
