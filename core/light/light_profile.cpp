@@ -60,11 +60,11 @@ void check(const ProfileParts& parts) {
 }
 
 /// Interval and fraction of a value in ascending knots.
-struct Place {
+struct KnotInterval {
     std::size_t left, right;
     float share;
 };
-Place place_in(const std::vector<float>& knots, float v) {
+KnotInterval place_in(const std::vector<float>& knots, float v) {
     if (knots.size() == 1) return {0, 0, 0};
     const auto after = std::upper_bound(knots.begin() + 1, knots.end() - 1, v);
     const std::size_t right = std::size_t(after - knots.begin());
@@ -127,7 +127,7 @@ Rgb ProfileFocus::at(float cosine) const {
 
 float ProfileTable::at(float to_theta, float to_phi) const {
     if (to_theta < theta.front() || to_theta > theta.back()) return 0;
-    const Place row = place_in(theta, to_theta), column = place_in(phi, to_phi);
+    const KnotInterval row = place_in(theta, to_theta), column = place_in(phi, to_phi);
     const auto along = [&](std::size_t r) {
         const float* v = values.data() + r * phi.size();
         return mix(v[column.left], v[column.right], column.share);

@@ -37,7 +37,7 @@ inline Camera exact() {
 /// Luminances of blocks of pixels, one row per independent picture.
 using Blocks = std::vector<std::vector<double>>;
 
-struct Look {
+struct Trial {
     double m2 = 2000;
     std::uint32_t camera_spp = 48, light_spp = 10, both_spp = 10;
     int pictures = 8;
@@ -45,7 +45,7 @@ struct Look {
     Filter filter = Filter(FilterKind::box);
 };
 
-inline Blocks draw(const Scene& scene, const Camera& camera, const Look& look, Technique technique) {
+inline Blocks draw(const Scene& scene, const Camera& camera, const Trial& look, Technique technique) {
     Blocks all;
     for (int k = 0; k < look.pictures; ++k) {
         RenderSettings s = look.settings;
@@ -100,7 +100,7 @@ inline double equality(const Blocks& a, const Blocks& b, double factor = 1) {
     return 1 - std::pow(1 - least, double(a[0].size() + 1));
 }
 
-inline void check_one_picture(const Scene& scene, const Camera& camera, const Look& look = {}) {
+inline void check_one_picture(const Scene& scene, const Camera& camera, const Trial& look = {}) {
     const Blocks by_camera = draw(scene, camera, look, Technique::camera);
     const Blocks by_light = draw(scene, camera, look, Technique::light);
     const Blocks by_both = draw(scene, camera, look, Technique::both);

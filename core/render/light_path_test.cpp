@@ -30,10 +30,10 @@ TEST_CASE("camera, light and both: through a pinhole, an exact lens, and a lens 
                            .light(kLamp).light(PointLight{{0.3f, 0.5f, 0.1f}, {0.4f, 0.4f, 0.4f}}).scene();
     for (const Camera& camera : {camera_of(Pinhole{50}), exact(), camera_of(ThinLens{50, 60, 0.8})})
         check_one_picture(*scene, camera);
-    Look one_wavelength;
+    Trial one_wavelength;
     one_wavelength.settings.dispersion = Dispersion::end_secondary;
     check_one_picture(*scene, exact(), one_wavelength);
-    Look wide_filter;   // has negative lobes and reaches beyond the frame
+    Trial wide_filter;   // has negative lobes and reaches beyond the frame
     wide_filter.filter = Filter(FilterKind::mitchell);
     check_one_picture(*scene, thin(), wide_filter);
 }
@@ -62,7 +62,7 @@ TEST_CASE("camera, light and both: what moves, before a shutter that rolls") {
         ShutterSettings shutter;
         shutter.exposure_s = rolls ? 0.2 : 1;
         if (rolls) shutter.scan = ScanOrder::top, shutter.line_time_s = 0.8 / (kHeight - 1);
-        Look look;
+        Trial look;
         look.settings.shutter = Shutter(shutter, kWidth, kHeight);
         check_one_picture(*scene, thin(), look);
     }
@@ -71,7 +71,7 @@ TEST_CASE("camera, light and both: what moves, before a shutter that rolls") {
 TEST_CASE("camera, light and both: few bounces") {
     const auto scene = World().light(PointLight{{-0.2f, 0.3f, 0.1f}, {0.5f, 0.5f, 0.5f}}).scene();
     for (const int depth : {0, 1, 2}) {
-        Look look;
+        Trial look;
         look.settings.path.max_depth = depth;
         const Blocks by_both = draw(*scene, thin(), look, Technique::both);
         if (depth == 0) CHECK(whole(by_both).mean == 0);
@@ -87,7 +87,7 @@ TEST_CASE("camera, light and both: light that all comes by way of a dark card be
     card.origin = {0, 0.5f, 1.75f};
     const auto scene = World().add(0, {"card", plain(1, {0.2f, 0.2f, 0.2f})}, card)
                            .light(SpotLight{{0, 0.4f, 1.2f}, {0, 0, 1}, {9, 9, 9}, 0.6f, 0.9f}).scene();
-    Look look;
+    Trial look;
     look.m2 = 20000, look.camera_spp = 150;
     check_one_picture(*scene, thin(), look);
     const Blocks by_camera = draw(*scene, thin(), look, Technique::camera);

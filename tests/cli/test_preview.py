@@ -23,7 +23,7 @@ from daguerre.rendering.coarse import coarse
 from daguerre.rendering.job import Job
 from daguerre.rendering.output import Output
 from daguerre.rendering.picture import Picture, View
-from daguerre.rendering.reporter import Look, Reporter
+from daguerre.rendering.reporter import PreviewPicture, Reporter
 from tests.support import scenes
 from tests.support.terminal import ANSWERS, ROOT, Terminal
 
@@ -251,7 +251,7 @@ class Watcher(Reporter):
     def __init__(self) -> None:
         self.seen: list[tuple[dg.Frame, bool]] = []
 
-    def preview(self, look: Look) -> None:
+    def preview(self, look: PreviewPicture) -> None:
         self.seen.append((look.frame, look.complete))
 
 

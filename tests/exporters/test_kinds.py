@@ -13,7 +13,7 @@ import daguerre as dg
 import daguerre.exporters.mitsuba.writer as mitsuba_writer
 import daguerre.exporters.pbrt.writer as pbrt_writer
 from daguerre.exporters.mitsuba.rough_plastic import Loss
-from daguerre.exporters.record import Outgoing, View
+from daguerre.exporters.record import ExportedView, Outgoing
 from daguerre.scene.media import DensityGrid, Medium
 from daguerre.scene.spectrum import Spectrum
 from tests.support import mitsuba_pictures, outgoing_scenes, pbrt_syntax
@@ -65,7 +65,7 @@ def gallery() -> dg.Scene:
 
 def outgoing(scene: dg.Scene) -> Outgoing:
     """The scene with a camera that sees all of it."""
-    view = View(dg.look_at((0, 0, 12), (0, 0, 0)), (36.0, 24.0), film_distance_mm=60.0)
+    view = ExportedView(dg.look_at((0, 0, 12), (0, 0, 0)), (36.0, 24.0), film_distance_mm=60.0)
     return Outgoing(scene, view, (48, 32), 16, 16)
 
 

@@ -12,7 +12,7 @@ import pytest
 import daguerre as dg
 from daguerre.exporters.outgoing.folder import OutgoingFolder
 from daguerre.exporters.outgoing.picture_file import write_pixels
-from daguerre.exporters.outgoing.pictures import Baker, Picture
+from daguerre.exporters.outgoing.pictures import BakedPicture, Baker
 from daguerre.files.notes import Notes
 from daguerre.scene.parts import Texture
 
@@ -24,7 +24,7 @@ def baker(pixels: np.ndarray, **more: object) -> Baker:
     return Baker([Texture(pixels, **more)], Notes())  # type: ignore[arg-type]
 
 
-def looked_up(picture: Picture, uv: np.ndarray) -> np.ndarray:
+def looked_up(picture: BakedPicture, uv: np.ndarray) -> np.ndarray:
     """Nearest values at texture coordinates of the mesh, shape (N, 2)."""
     a, b, c, d, e, f = picture.transform
     at = np.stack([a * uv[:, 0] + b * uv[:, 1] + c, d * uv[:, 0] + e * uv[:, 1] + f], 1)
@@ -46,7 +46,7 @@ def looked_up(picture: Picture, uv: np.ndarray) -> np.ndarray:
 def test_bytes_without_a_factor_stay_bytes() -> None:
     pixels = RNG.integers(0, 256, (4, 6, 4)).astype(np.uint8)
     made = baker(pixels, srgb=True).color(dg.TextureSlot(0), (1.0, 1.0, 1.0))
-    assert isinstance(made, Picture)
+    assert isinstance(made, BakedPicture)
     np.testing.assert_array_equal(made.pixels, pixels[:, :, :3])
     assert made.srgb
 
@@ -54,7 +54,7 @@ def test_bytes_without_a_factor_stay_bytes() -> None:
 def test_a_factor_multiplies_light_not_codes() -> None:
     pixels = np.full((1, 1, 3), 188, np.uint8)  # about 0.5 of the light
     made = baker(pixels, srgb=True).color(dg.TextureSlot(0), (0.5, 1.0, 0.25))
-    assert isinstance(made, Picture)
+    assert isinstance(made, BakedPicture)
     light = ((188 / 255 + 0.055) / 1.055) ** 2.4
     np.testing.assert_allclose(made.linear[0, 0], [0.5 * light, light, 0.25 * light], rtol=1e-5)
 
@@ -63,10 +63,10 @@ def test_channels_of_numbers_are_linear_and_a_missing_alpha_is_one() -> None:
     pixels = RNG.integers(0, 256, (3, 3, 3)).astype(np.uint8)
     one = baker(pixels)
     green = one.number(dg.TextureSlot(0), 1.0, 1)
-    assert isinstance(green, Picture)
+    assert isinstance(green, BakedPicture)
     np.testing.assert_allclose(green.linear[:, :, 0], pixels[:, :, 1] / 255, rtol=1e-6)
     alpha = one.number(dg.TextureSlot(0), 0.5, 3)
-    assert isinstance(alpha, Picture)
+    assert isinstance(alpha, BakedPicture)
     np.testing.assert_allclose(alpha.linear, 0.5)
     assert one.number(None, 0.3, 1) == 0.3
 
@@ -74,7 +74,7 @@ def test_channels_of_numbers_are_linear_and_a_missing_alpha_is_one() -> None:
 def test_alpha_of_an_srgb_texture_is_linear() -> None:
     pixels = np.full((1, 1, 4), 128, np.uint8)
     alpha = baker(pixels, srgb=True).number(dg.TextureSlot(0), 1.0, 3)
-    assert isinstance(alpha, Picture)
+    assert isinstance(alpha, BakedPicture)
     assert alpha.linear[0, 0, 0] == pytest.approx(128 / 255)
 
 
@@ -83,7 +83,7 @@ def test_a_mirrored_texture_is_one_that_repeats_its_mirror_image(wrap: tuple[str
     slot = dg.TextureSlot(0, transform=(0.7, 0.2, 0.3, -0.4, 1.2, 0.1))
     pixels = RNG.random((4, 5, 3)).astype(np.float32)
     made = baker(pixels, wrap=wrap).color(slot, (1.0, 1.0, 1.0))
-    assert isinstance(made, Picture)
+    assert isinstance(made, BakedPicture)
     plain = made.without_mirrors()
     assert "mirror" not in plain.wrap
     uv = RNG.uniform(-3, 3, (400, 2))

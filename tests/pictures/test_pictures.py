@@ -17,7 +17,7 @@ from daguerre.pictures.images import read_file
 from daguerre.pictures.iris import read_grey
 from daguerre.pictures.light import read_environment
 from daguerre.pictures.reading import apart, jpeg, kinds, library, read, tiff
-from daguerre.pictures.reading.source import Source
+from daguerre.pictures.reading.source import PictureBytes
 from daguerre.plates import files as plates
 from daguerre.shading.picture_bytes import UnknownFormat, decoded
 
@@ -145,10 +145,10 @@ def test_both_ways_give_the_same_pixels(
     rgba = np.random.default_rng(4).random((5, 9, 4), np.float32)
     path = write(tmp_path / f"a.{suffix}", rgba, kind, Orientation=6)
     for floats in (False, True):
-        here = read.read(Source(path), "a", floats=floats)
+        here = read.read(PictureBytes(path), "a", floats=floats)
         with monkeypatch.context() as patch:
             patch.setitem(read._CHECKS, here.kind, lambda *_: False)
-            other = read.read(Source(path), "a", floats=floats)
+            other = read.read(PictureBytes(path), "a", floats=floats)
         assert here.pixels.dtype == other.pixels.dtype
         assert np.allclose(here.pixels, other.pixels, rtol=1e-6, atol=0)
         assert (here.names, here.orientation) == (other.names, other.orientation)
@@ -171,7 +171,7 @@ def test_only_plain_tiffs_are_decoded_here(
     tmp_path: Path, attributes: dict[str, object], plain: bool, runs: list[str]
 ) -> None:
     path = write(tmp_path / "a.tif", np.repeat(GREYS, 3, axis=0), **attributes)
-    assert tiff.check(Source(path), "a", 1 << 30) is plain
+    assert tiff.check(PictureBytes(path), "a", 1 << 30) is plain
     assert read_file(path).shape == (120, 60, 3)
     assert bool(runs) is not plain
 
@@ -185,12 +185,12 @@ def test_a_tiff_with_an_odd_tag_is_decoded_apart(tmp_path: Path, tag: int, value
     path = write(tmp_path / "a.tif", GREYS, compression="lzw")
     data = bytearray(path.read_bytes())
     (at,) = struct.unpack_from("<I", data, 4)
-    assert tiff.check(Source(path), "a", 1 << 30)
+    assert tiff.check(PictureBytes(path), "a", 1 << 30)
     for entry in range(at + 2, at + 2 + 12 * data[at], 12):
         if struct.unpack_from("<H", data, entry)[0] == tag:
             struct.pack_into("<HII", data, entry + 2, 4, 1, value)
     path.write_bytes(data)
-    assert not tiff.check(Source(path), "a", 1 << 30)
+    assert not tiff.check(PictureBytes(path), "a", 1 << 30)
 
 
 @pytest.mark.parametrize("tag", [256, 257, 258, 259, 262, 273, 277, 278, 279, 339])
@@ -218,11 +218,11 @@ def test_tiled_tiffs_are_plain_if_all_tiles_are_there(tmp_path: Path) -> None:
     assert out.open(str(path), spec)
     assert out.write_image(np.zeros((40, 40, 3), np.uint8))
     out.close()
-    assert tiff.check(Source(path), "a", 1 << 30)
+    assert tiff.check(PictureBytes(path), "a", 1 << 30)
     cut = tmp_path / "cut.tif"
-    tags = tiff.read_tags(Source(path), "a")
+    tags = tiff.read_tags(PictureBytes(path), "a")
     cut.write_bytes(path.read_bytes().replace(struct.pack("<I", tags[324][3]), b"\xff\xff\xff\x7f"))
-    assert not tiff.check(Source(cut), "a", 1 << 30)
+    assert not tiff.check(PictureBytes(cut), "a", 1 << 30)
 
 
 def many_tags(number: int) -> bytes:

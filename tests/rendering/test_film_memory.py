@@ -14,7 +14,7 @@ from daguerre.rendering import film_memory
 from daguerre.rendering.job import Job
 from daguerre.rendering.output import Output
 from daguerre.rendering.picture import Picture, View
-from daguerre.rendering.reporter import Look, Reporter
+from daguerre.rendering.reporter import PreviewPicture, Reporter
 from daguerre.rendering.session import Session
 from tests.support import scenes
 
@@ -58,7 +58,7 @@ def test_a_session_refuses_before_there_is_a_film(monkeypatch: pytest.MonkeyPatc
 class Watching(Reporter):
     previews = True
 
-    def preview(self, look: Look) -> None:
+    def preview(self, look: PreviewPicture) -> None:
         raise AssertionError("a look at a picture that does not fit")
 
 

@@ -38,7 +38,7 @@ constexpr int kPointsBelow = 2, kLeastDegree = 3;
 constexpr double kLight = 5e-4, kNearlyAll = 1.2;
 
 /// Evaluation point of a sample, with or without the segment's bend of q.
-struct Place {
+struct FitPoint {
     const LensFit& fit;
     const FitSegment& segment;
     bool bent;
@@ -52,7 +52,7 @@ struct Place {
 /// Fit of a vector over the samples.
 template <typename Vector>
 struct VectorFit {
-    Place place;
+    FitPoint place;
     const std::vector<FitSample>& samples;
     Vector vector;
 
@@ -82,7 +82,7 @@ struct VectorFit {
     }
 };
 template <typename Vector>
-VectorFit(Place, const std::vector<FitSample>&, Vector) -> VectorFit<Vector>;
+VectorFit(FitPoint, const std::vector<FitSample>&, Vector) -> VectorFit<Vector>;
 
 std::vector<FitSample> part(const std::vector<FitSample>& all, std::size_t first,
                             std::size_t last) {
@@ -110,7 +110,7 @@ struct DirectionFit {
     std::vector<FitSample> samples;
 };
 
-DirectionFit fit_direction(const Place& place, const std::vector<FitSample>& base,
+DirectionFit fit_direction(const FitPoint& place, const std::vector<FitSample>& base,
                            const std::vector<FitSample>& watched, int terms) {
     const auto to_direction = [](const FitSample& s) { return s.direction; };
     const VectorFit direction{place, base, to_direction};
@@ -127,7 +127,7 @@ DirectionFit fit_direction(const Place& place, const std::vector<FitSample>& bas
 
 /// Fits the offset to its tolerance. In wide fields and without axial symmetry, where it matters
 /// for the film position, it uses the basis of the direction.
-FitBlock fit_offset(const Place& place, const std::vector<FitSample>& base,
+FitBlock fit_offset(const FitPoint& place, const std::vector<FitSample>& base,
                     const DirectionFit& direction, const FitEffort& effort) {
     const auto to_offset = [](const FitSample& s) { return s.offset; };
     if (is_wide(base) || !place.fit.symmetry.axial)
@@ -140,7 +140,7 @@ FitBlock fit_offset(const Place& place, const std::vector<FitSample>& base,
 
 /// Fits a point on the iris or a mount with its edge at `radius`.
 template <typename Vector>
-FitBlock fit_point(const Place& place, const std::vector<FitSample>& wide, Vector vector,
+FitBlock fit_point(const FitPoint& place, const std::vector<FitSample>& wide, Vector vector,
                    double radius, int terms) {
     const int degree = place.fit.degree;
     const FitBasis most{std::min(degree, std::max(kLeastDegree, degree - kPointsBelow)),
@@ -151,7 +151,7 @@ FitBlock fit_point(const Place& place, const std::vector<FitSample>& wide, Vecto
     return point.of(basis);
 }
 
-FitBlock fit_points(const Place& place, const FitBlock& offset,
+FitBlock fit_points(const FitPoint& place, const FitBlock& offset,
                     const std::vector<FitSample>& wide, int terms) {
     const LensFit& fit = place.fit;
     FitBlock all = offset;
@@ -167,7 +167,7 @@ FitBlock fit_points(const Place& place, const FitBlock& offset,
     return all;
 }
 
-FitFunctions fit_light(const Place& place, const std::vector<FitSample>& samples,
+FitFunctions fit_light(const FitPoint& place, const std::vector<FitSample>& samples,
                        int terms) {
     const auto fit = [&](const FitBasis& basis) {
         return fit_scalars(light_terms(place.fit.symmetry), samples, 1, basis, place,
@@ -262,7 +262,7 @@ std::vector<FitSegment> fit_segments(const FitRays& rays, const LensFit& fit,
 FitSegment fit_segment(const LensFit& fit, const std::vector<FitSample>& clear,
                        const std::vector<FitSample>& wide, const FitSegment& domain,
                        const FitEffort& effort) {
-    const Place bent{fit, domain, true}, straight{fit, domain, false};
+    const FitPoint bent{fit, domain, true}, straight{fit, domain, false};
     const auto base = part(clear, 0, clear.size() / kWatched),
                watched = part(clear, base.size(), clear.size());
     FitSegment found = domain;
@@ -329,7 +329,7 @@ LensFit refit_rays(const LensFit& fit, const std::vector<FitRay>& rays,
         const bool axial = fit.symmetry.axial;
         const FitBasis basis{fit.degree, kMostDispersion};
         const auto one = [&](bool bent, auto vector) {
-            return fit_vectors(fit.symmetry, basis, mine, 1, Place{fit, segment, bent},
+            return fit_vectors(fit.symmetry, basis, mine, 1, FitPoint{fit, segment, bent},
                                [&](const FitSample& s, int) { return vector(s); });
         };
         segment.direction = one(true, [](const FitSample& s) { return s.direction; });

@@ -17,7 +17,7 @@ struct Landing {
 };
 
 /// Point on the axis that emits rays into the entrance pupil.
-struct Source {
+struct AxisPoint {
     const Tracer& tracer;
     LensIndices index;
     Clip clip;
@@ -46,7 +46,7 @@ struct Source {
     }
 };
 
-void land(const Source& source, double guess, double azimuth, double weight, double film_z,
+void land(const AxisPoint& source, double guess, double azimuth, double weight, double film_z,
           std::vector<Landing>& out) {
     const double edge = source.edge(guess, azimuth);
     for (int k = 0; k < kRings; ++k) {
@@ -91,7 +91,7 @@ BestFocus best_focus(const Prescription& lens, double f_stop, double distance_m,
         const double guess = radius * std::abs(f.entrance_magnification);
         std::vector<Landing> rays;
         for (const auto& [nm, weight] : wavelengths) {
-            const Source source{tracer, tracer.at(nm), {true, &round, radius},
+            const AxisPoint source{tracer, tracer.at(nm), {true, &round, radius},
                                 origin - 1e3 * distance_m, f.entrance_pupil_z};
             for (int k = 0; k < (symmetric ? 1 : kAzimuths); ++k)
                 land(source, guess, 2 * kPiD * k / kAzimuths, weight, best.film_z, rays);

@@ -15,7 +15,7 @@ std::string number(double value) {
 }
 
 /// Surface under validation.
-struct Place {
+struct CheckedSurface {
     const Surface& s;
     int index;
     std::string name;
@@ -31,7 +31,7 @@ struct Place {
     }
 };
 
-void check_form(const Place& at) {
+void check_form(const CheckedSurface& at) {
     const Surface& s = at.s;
     for (const double c : {s.curvature, s.curvature_x})
         at.range("curvature", c, -1e3, 1e3, "at most 1000 per mm");
@@ -49,14 +49,14 @@ void check_form(const Place& at) {
     }
 }
 
-void check_ripple(const Place& at) {
+void check_ripple(const CheckedSurface& at) {
     const Ripple& r = at.s.ripple;
     if (r.rms_nm == 0) return;
     at.range("height of the ripple", r.rms_nm, 0, 1000, "0 to 1000 nm");
     at.range("period of the ripple", r.period_um, 5, 1e4, "5 to 10000 um");
 }
 
-void check_apertures(const Place& at) {
+void check_apertures(const CheckedSurface& at) {
     const Surface& s = at.s;
     if (!(s.semi_diameter > 0))
         at.refuse("semi-diameter", "more than 0 mm", number(s.semi_diameter));
@@ -70,7 +70,7 @@ void check_apertures(const Place& at) {
 
 /// Checks that the sag is defined on the whole clear disc; for a sphere, that the clear radius is
 /// at most the radius of curvature.
-void check_domain(const Place& at) {
+void check_domain(const CheckedSurface& at) {
     const double r = clear_radius(at.s);
     if (!std::isfinite(r)) return;
     const SurfaceForm form(at.s, 0);
@@ -84,7 +84,7 @@ void check_domain(const Place& at) {
     }
 }
 
-void check_placement(const Place& at) {
+void check_placement(const CheckedSurface& at) {
     const Vec3d d = at.s.decenter, t = at.s.tilt;
     for (const double mm : {d.x, d.y, d.z})
         at.range("decentre", mm, -1e4, 1e4, "at most 1e4 mm");
@@ -94,7 +94,7 @@ void check_placement(const Place& at) {
 }
 
 void check_surface(const Prescription& lens, int i) {
-    const Place at{lens.surfaces[i], i, surface_name(lens, i)};
+    const CheckedSurface at{lens.surfaces[i], i, surface_name(lens, i)};
     check_ripple(at);
     check_apertures(at);
     check_form(at);

@@ -27,7 +27,7 @@ constexpr float kBright = 0.1f;          // fraction of a spot's luminance above
 constexpr float kLeast = 0.1f;           // fraction of the mean: lower bound of sampling weights in a spot or tile
 constexpr int kTileSequence = -6, kSpotSequence = -16;   // in place of a pixel row
 
-struct Look {
+struct SurveyRay {
     Ray ray;
     float luminance;
     int cell;
@@ -88,7 +88,7 @@ class Surveyor {
   private:
     /// Samples a path, with enlarged lamps in mirrors; empty where no light enters.
     template <typename Toward>
-    std::optional<Look> look(const Toward& toward, PathSampler& sampler, float spread, std::uint64_t& rays) const {
+    std::optional<SurveyRay> look(const Toward& toward, PathSampler& sampler, float spread, std::uint64_t& rays) const {
         const CameraRandom u = sampler.camera();
         const Moment moment = view_.shutter.draw_any(u.time);
         const auto ray = view_.ray(toward(u.film, moment.time), {2 * u.lens.x - 1, 2 * u.lens.y - 1}, moment.time);
@@ -98,24 +98,24 @@ class Surveyor {
         const Radiance light = radiance(scene_, *ray, own, sampler, view_.path, nullptr, &rays);
         float y = wavelengths.to_xyz(light.sum()).y;
         if (spread > 0 && !glints_.empty()) y += glints_.seen(*ray, spread, wavelengths, sampler, rays);
-        return Look{*ray, std::isfinite(y) ? std::max(y, 0.f) : 0.f, 0};
+        return SurveyRay{*ray, std::isfinite(y) ? std::max(y, 0.f) : 0.f, 0};
     }
 
     void look_around();
     std::vector<HighlightSpot> hot_cells() const;
-    std::vector<Look> looks_at(const HighlightSpot& spot, int count, int sequence, float spread);
+    std::vector<SurveyRay> looks_at(const HighlightSpot& spot, int count, int sequence, float spread);
     void close_in(HighlightSpot& spot, int index);
     std::vector<HighlightSpot> worth_it(std::vector<HighlightSpot> spots);
     bool learn(HighlightSpot& spot, std::span<const HighlightSpot> before, int sequence);
     std::optional<HighlightTile> rest(std::size_t tile, std::span<const HighlightSpot> spots) const;
-    Vec2f velocity(const HighlightSpot& spot, std::span<const Look> looks) const;
-    float nearness(const HighlightSpot& spot, std::span<const Look> looks) const;
+    Vec2f velocity(const HighlightSpot& spot, std::span<const SurveyRay> looks) const;
+    float nearness(const HighlightSpot& spot, std::span<const SurveyRay> looks) const;
 
     const Scene& scene_;
     SurveyView view_;
     Glints glints_;
     std::vector<DirectionTile> tiles_;
-    std::vector<std::vector<Look>> looks_;   // per tile
+    std::vector<std::vector<SurveyRay>> looks_;   // per tile
     double mean_ = 0;                        // mean luminance of directions from which light enters
     std::atomic<std::uint64_t> rays_{0};
 };
@@ -141,7 +141,7 @@ void Surveyor::look_around() {
     });
     double sum = 0, area = 0;
     for (std::size_t t = 0; t < tiles_.size(); ++t)
-        for (const Look& l : looks_[t])
+        for (const SurveyRay& l : looks_[t])
             sum += l.luminance * tiles_[t].solid_angle(), area += tiles_[t].solid_angle();
     mean_ = area > 0 ? sum / area : 0;
 }
@@ -153,7 +153,7 @@ std::vector<HighlightSpot> Surveyor::hot_cells() const {
         std::array<double, kCells * kCells> light{};
         std::array<int, kCells * kCells> count{};
         std::array<float, kCells * kCells> peak{};
-        for (const Look& l : looks_[t]) {
+        for (const SurveyRay& l : looks_[t]) {
             light[l.cell] += l.luminance, ++count[l.cell];
             peak[l.cell] = std::max(peak[l.cell], l.luminance);
         }
@@ -182,10 +182,10 @@ std::vector<HighlightSpot> Surveyor::hot_cells() const {
 }
 
 /// Uniform samples of a spot's rectangle.
-std::vector<Look> Surveyor::looks_at(const HighlightSpot& spot, int count, int sequence, float spread) {
+std::vector<SurveyRay> Surveyor::looks_at(const HighlightSpot& spot, int count, int sequence, float spread) {
     HighlightSpot evenly = spot;
     evenly.weights = even(1);
-    std::vector<Look> looks;
+    std::vector<SurveyRay> looks;
     std::uint64_t rays = 0;
     for (int i = 0; i < count; ++i) {
         PathSampler sampler(sequence, kSpotSequence, std::uint32_t(i), 0);
@@ -205,11 +205,11 @@ std::vector<Look> Surveyor::looks_at(const HighlightSpot& spot, int count, int s
 
 /// Inverse distance of the plane on which the spot has the least parallax between points of the front, by least
 /// squares.
-float Surveyor::nearness(const HighlightSpot& spot, std::span<const Look> looks) const {
+float Surveyor::nearness(const HighlightSpot& spot, std::span<const SurveyRay> looks) const {
     HighlightSpot far = spot, near = spot;
     far.nearness = 0, near.nearness = 1;
     double sum = 0, a[2]{}, b[2]{}, ab = 0, bb = 0;
-    for (const Look& l : looks) {
+    for (const SurveyRay& l : looks) {
         const auto s = far.meet(l.ray), moved = near.meet(l.ray);
         if (!s || !(l.luminance > 0)) continue;
         const Vec2f by = *moved - *s;
@@ -227,11 +227,11 @@ float Surveyor::nearness(const HighlightSpot& spot, std::span<const Look> looks)
 }
 
 /// Velocity of the spot on its plane, by least squares.
-Vec2f Surveyor::velocity(const HighlightSpot& spot, std::span<const Look> looks) const {
+Vec2f Surveyor::velocity(const HighlightSpot& spot, std::span<const SurveyRay> looks) const {
     HighlightSpot still = spot;
     still.velocity = {};
     double sum = 0, t = 0, tt = 0, x = 0, y = 0, tx = 0, ty = 0, squares = 0;
-    for (const Look& l : looks) {
+    for (const SurveyRay& l : looks) {
         const auto s = still.meet(l.ray);
         if (!s) continue;
         const double w = l.luminance, time = l.ray.time;
@@ -252,19 +252,19 @@ Vec2f Surveyor::velocity(const HighlightSpot& spot, std::span<const Look> looks)
 void Surveyor::close_in(HighlightSpot& spot, int index) {
     float spread = kSpread;
     for (int i = 0; i < kMostLooks; ++i, spread *= kSharper) {
-        const std::vector<Look> looks = looks_at(spot, kClose, index * 16 + i, spread);
+        const std::vector<SurveyRay> looks = looks_at(spot, kClose, index * 16 + i, spread);
         double light = 0, squares = 0;
-        for (const Look& l : looks) light += l.luminance, squares += double(l.luminance) * l.luminance;
+        for (const SurveyRay& l : looks) light += l.luminance, squares += double(l.luminance) * l.luminance;
         if (!(light > 0)) return;
         const double least = kBright * squares / light;
-        std::vector<Look> bright;
-        for (const Look& l : looks)
+        std::vector<SurveyRay> bright;
+        for (const SurveyRay& l : looks)
             if (l.luminance > least) bright.push_back(l);
         HighlightSpot closer = spot;
         closer.velocity = velocity(spot, bright);
         closer.nearness = nearness(closer, bright);
         Extent extent;
-        for (const Look& l : bright)
+        for (const SurveyRay& l : bright)
             if (const auto at = closer.meet(l.ray)) extent.add(*at);
         if (extent.count < 2) return;
         const Vec2f size = extent.high - extent.low;
@@ -294,7 +294,7 @@ std::vector<HighlightSpot> Surveyor::worth_it(std::vector<HighlightSpot> spots) 
 bool Surveyor::learn(HighlightSpot& spot, std::span<const HighlightSpot> before, int sequence) {
     std::vector<float> weights(std::size_t(kGrid) * kGrid);
     double sum = 0;
-    for (const Look& l : looks_at(spot, kGrid * kGrid * kPerCell, sequence, 0)) {
+    for (const SurveyRay& l : looks_at(spot, kGrid * kGrid * kPerCell, sequence, 0)) {
         if (held(before, l.ray)) continue;
         weights[l.cell] += l.luminance / kPerCell, sum += l.luminance;
     }
@@ -311,7 +311,7 @@ std::optional<HighlightTile> Surveyor::rest(std::size_t tile, std::span<const Hi
     if (looks_[tile].empty()) return std::nullopt;
     std::vector<float> weights(kCells * kCells);
     double sum = 0;
-    for (const Look& l : looks_[tile]) {
+    for (const SurveyRay& l : looks_[tile]) {
         if (held(spots, l.ray)) continue;
         weights[l.cell] += l.luminance / kWide, sum += l.luminance;
     }

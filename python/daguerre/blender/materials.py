@@ -20,7 +20,7 @@ from daguerre.shading.bake import Baker
 from daguerre.shading.channels import Texel, UnsupportedError, Value, VertexColor, numbers_of
 from daguerre.shading.evaluate import Context, Evaluator
 from daguerre.shading.materialx.graph import Graph
-from daguerre.shading.surface import Surface as Look
+from daguerre.shading.surface import GltfInputs
 from daguerre.shading.textures import Packer
 
 from .meshes import Needs
@@ -30,7 +30,7 @@ from .shading.network import Networks
 from .shading.operations import operations
 from .shading.painting import LEAST, Reads, canvas_of, reads_of, side_of
 from .shading.pictures import Pictures
-from .shading.surfaces import ATLAS, Surface
+from .shading.surfaces import ATLAS, MaterialFaces
 from .shading.texture_nodes import ACTIVE
 from .shading.tree import Tree
 from .shading.uv_size import uv_size
@@ -124,7 +124,7 @@ class Materials:
             return None
         return str(material.name_full), np.asarray(world).tobytes() if reads.world else b""
 
-    def painted(self, material: bpy.types.Material, surface: Surface) -> tuple[int, Needs]:
+    def painted(self, material: bpy.types.Material, surface: MaterialFaces) -> tuple[int, Needs]:
         """Index of a material with patterns computed for a surface, and the layers that it reads.
 
         Raises:
@@ -133,7 +133,7 @@ class Materials:
         made = self._paint(material, surface) or self._of(material)
         return made.index, Needs(_names(made.uv_sets), _name(made.colors))
 
-    def _paint(self, material: bpy.types.Material, surface: Surface) -> _Made | None:
+    def _paint(self, material: bpy.types.Material, surface: MaterialFaces) -> _Made | None:
         """Bakes the patterns of a material; None: the surface has no room for them."""
         reads = self._reads(material)
         trial = canvas_of(reads, surface, TRIAL)
@@ -181,7 +181,10 @@ class Materials:
         return _Made(self._scene.add_material(Material(Diffuse(_PLAIN))))
 
     def _make(
-        self, material: bpy.types.Material, on: Surface | None = None, canvas: Canvas | None = None
+        self,
+        material: bpy.types.Material,
+        on: MaterialFaces | None = None,
+        canvas: Canvas | None = None,
     ) -> _Made:
         if material.node_tree is None:
             return _Made(self._scene.add_material(_displayed(material)))
@@ -191,9 +194,9 @@ class Materials:
             return self._assembled(look, str(material.name), baker)
         except UnsupportedError as error:
             self._notes.add(f"shading: {error} is not supported: the material is grey")
-            return self._assembled(Look(base_color=_PLAIN), str(material.name), baker)
+            return self._assembled(GltfInputs(base_color=_PLAIN), str(material.name), baker)
 
-    def _assembled(self, surface: Look, name: str, baker: Baker) -> _Made:
+    def _assembled(self, surface: GltfInputs, name: str, baker: Baker) -> _Made:
         """Adds the material of a surface."""
         sets = tuple(dict.fromkeys(_layers(surface, Texel)))
         if len(sets) > 2:
@@ -203,7 +206,9 @@ class Materials:
         made = assembler.material(surface, name)
         return _Made(self._scene.add_material(made), sets, colors)
 
-    def _closure(self, material: bpy.types.Material, on: Surface | None, baker: Baker) -> Closure:
+    def _closure(
+        self, material: bpy.types.Material, on: MaterialFaces | None, baker: Baker
+    ) -> Closure:
         """Scattering and emission of a material's surface; black if it has none."""
         graph = self._graph(material)
         if graph is None:
@@ -217,7 +222,7 @@ class Materials:
         return Tree(graph, evaluator, math).surface()
 
 
-def _unit(material: bpy.types.Material | None, on: Surface | None, primvar: str) -> float:
+def _unit(material: bpy.types.Material | None, on: MaterialFaces | None, primvar: str) -> float:
     """Length of one unit of texture coordinates, in units of the scene."""
     length = None if on is None else on.length(primvar)
     return uv_size(material) if length is None else length
@@ -243,18 +248,20 @@ def _displayed(material: bpy.types.Material) -> Material:
     return Material(kind, name=str(material.name))
 
 
-def _look(closure: Closure) -> Look:
+def _look(closure: Closure) -> GltfInputs:
     """Surface with emission and opacity."""
     surface = closure.surface
     if surface is None:
-        surface = Look(base_color=_BLACK, specular=(0.0,), roughness=(1.0,), double_sided=True)
+        surface = GltfInputs(
+            base_color=_BLACK, specular=(0.0,), roughness=(1.0,), double_sided=True
+        )
     numbers = numbers_of(closure.cover)
     is_whole = numbers is not None and numbers[0] >= 1
     mode = "opaque" if is_whole else "blend"
     return replace(surface, emissive=closure.emission, alpha=closure.cover[:1], alpha_mode=mode)
 
 
-def _layers(surface: Look, kind: type[Texel | VertexColor]) -> Iterator[str]:
+def _layers(surface: GltfInputs, kind: type[Texel | VertexColor]) -> Iterator[str]:
     """Layers that the pictures, or the colours of vertices, of a surface are read by, in order."""
     for field in fields(surface):
         value = getattr(surface, field.name)

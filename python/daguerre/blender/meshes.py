@@ -16,7 +16,7 @@ from daguerre.scene.polygons import weld
 from daguerre.scene.scene import Scene
 
 from .arrays import attribute, points_of, read
-from .shading.surfaces import Surface
+from .shading.surfaces import MaterialFaces
 
 if TYPE_CHECKING:
     import bpy
@@ -58,7 +58,9 @@ class Materials(Protocol):
     def binding(self, material: bpy.types.Material | None, world: Matrix) -> Any | None:
         """Key of a material's dependencies besides the mesh; None: it is the same on all."""
 
-    def painted(self, material: bpy.types.Material | None, surface: Surface) -> tuple[int, Needs]:
+    def painted(
+        self, material: bpy.types.Material | None, surface: MaterialFaces
+    ) -> tuple[int, Needs]:
         """Index of a material that is made for a surface, and layers that it reads."""
 
 
@@ -68,7 +70,7 @@ def slots_of(thing: bpy.types.Object) -> tuple[Any, ...]:
 
 
 @dataclass(frozen=True)
-class Source:
+class MeshArrays:
     """The arrays of a Blender mesh.
 
     Attributes:
@@ -90,7 +92,7 @@ class Source:
     normals: NDArray[np.float32] | None
 
 
-def source_of(mesh: bpy.types.Mesh, slots: int) -> Source:
+def source_of(mesh: bpy.types.Mesh, slots: int) -> MeshArrays:
     """Reads a mesh.
 
     Args:
@@ -105,7 +107,7 @@ def source_of(mesh: bpy.types.Mesh, slots: int) -> Source:
     faces = read(mesh.loop_triangle_polygons, "value", 1, np.int32)
     index = attribute(mesh, "material_index")
     chosen = np.zeros(len(faces), np.int32) if index is None else index[faces]
-    return Source(
+    return MeshArrays(
         mesh,
         points_of(mesh),
         vertices,
@@ -184,14 +186,16 @@ class Meshes:
             triangles, faces = source.triangles, source.faces
             if len(used) > 1:
                 triangles, faces = triangles[mine], faces[mine]
-            surface = Surface(mesh, source.points, source.vertices, triangles, faces, world)
+            surface = MaterialFaces(mesh, source.points, source.vertices, triangles, faces, world)
             made, needs = None, plans[slot][1]
             if needs is None:
                 made, needs = self._materials.painted(slots[slot], surface)
             parts.append((self._part(source, surface, needs, steps), slot, made))
         return parts
 
-    def _part(self, source: Source, surface: Surface, needs: Needs, steps: Steps | None) -> int:
+    def _part(
+        self, source: MeshArrays, surface: MaterialFaces, needs: Needs, steps: Steps | None
+    ) -> int:
         """Adds some triangles, with vertices for their corners."""
         triangles = corners = surface.triangles
         index = None
@@ -217,7 +221,7 @@ class Meshes:
         )
 
     def _layers(
-        self, source: Source, surface: Surface, needs: Needs
+        self, source: MeshArrays, surface: MaterialFaces, needs: Needs
     ) -> dict[str, NDArray[np.float32]]:
         """Values of corners, by argument of ``Scene.add_mesh``."""
         found = {"normals": source.normals}
@@ -227,7 +231,7 @@ class Meshes:
             found["colors"] = self._colors(source, needs.color)
         return {key: values for key, values in found.items() if values is not None}
 
-    def _uv(self, surface: Surface, name: str) -> NDArray[np.float32] | None:
+    def _uv(self, surface: MaterialFaces, name: str) -> NDArray[np.float32] | None:
         """Texture coordinates of corners, (0, 0) at the top left; None: there are none."""
         uv = surface.layer(name)
         if uv is None:
@@ -236,7 +240,7 @@ class Meshes:
             return None
         return np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)
 
-    def _colors(self, source: Source, name: str) -> NDArray[np.float32] | None:
+    def _colors(self, source: MeshArrays, name: str) -> NDArray[np.float32] | None:
         """Linear colours of corners; None: there are none."""
         layers = source.mesh.color_attributes
         index = layers.find(name) if name else layers.render_color_index

@@ -107,7 +107,7 @@ def blur_of(thing: bpy.types.Object) -> Blur:
 
 
 @dataclass
-class Look:
+class Snapshot:
     """Things that the scene shows at one moment.
 
     Attributes:
@@ -124,9 +124,11 @@ class Look:
     probed: dict[Identity, Any] = field(default_factory=dict)
 
 
-def look(depsgraph: bpy.types.Depsgraph, probe: Probe, wanted: set[Identity] | None = None) -> Look:
+def look(
+    depsgraph: bpy.types.Depsgraph, probe: Probe, wanted: set[Identity] | None = None
+) -> Snapshot:
     """Looks at a scene; points only of ``wanted`` things, if given."""
-    found, pointers = Look(), set()
+    found, pointers = Snapshot(), set()
     for seen in walk(depsgraph):
         key = seen.identity
         found.matrices[key] = seen.matrix
@@ -199,7 +201,7 @@ def motion_of(
     return _collected(now, looks, (offsets + time).tolist(), notes)
 
 
-def _thinned(seen: Look, now: Look) -> Look:
+def _thinned(seen: Snapshot, now: Snapshot) -> Snapshot:
     """Shares arrays with the same bits as at the frame."""
     for mine, base in ((seen.matrices, now.matrices), (seen.points, now.points)):
         _share(mine, base)
@@ -213,7 +215,9 @@ def _share(mine: dict[Identity, Any], base: Mapping[Identity, Any]) -> None:
             mine[key] = other
 
 
-def _collected(now: Look, looks: Sequence[Look], times: list[float], notes: Notes) -> Motion:
+def _collected(
+    now: Snapshot, looks: Sequence[Snapshot], times: list[float], notes: Notes
+) -> Motion:
     """Values over time of all things that change."""
     matrices, points, probed = {}, {}, {}
     for key, blur in now.blurs.items():

@@ -28,7 +28,7 @@ MAX_BYTES, _LONGEST_NAME = 1 << 33, 4096
 _POINT_BYTES = 24
 
 
-class _Reader:
+class _ColmapReader:
     """Reads numbers in order; a file that ends too early is an error."""
 
     def __init__(self, file: BinaryIO, path: Path) -> None:
@@ -77,7 +77,7 @@ def cameras(path: Path, models: Mapping[str, tuple[str, int, int]]) -> Iterator[
         InputError: The file cannot be read, or has another model.
     """
     with opened(path, MAX_BYTES) as file, reading(path):
-        reader = _Reader(file, path)
+        reader = _ColmapReader(file, path)
         for index in range(reader.count(48)):
             camera, model, width, height = (int(v) for v in reader.take("IiQQ"))
             where = f"{path}: camera {index + 1}"
@@ -97,7 +97,7 @@ def images(path: Path) -> Iterator[ImageRow]:
         InputError: The file cannot be read.
     """
     with opened(path, MAX_BYTES) as file, reading(path):
-        reader = _Reader(file, path)
+        reader = _ColmapReader(file, path)
         for index in range(reader.count(73)):
             where = f"{path}: picture {index + 1}"
             _, *pose = reader.take("I7d")

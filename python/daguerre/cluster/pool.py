@@ -14,7 +14,7 @@ from daguerre.errors import InputError, MismatchError
 
 from . import task as on_worker
 from .answers import Answer, Failed, Needs, Sums, answer_of
-from .task import Place, Task
+from .task import SceneKey, Task
 from .values import Values
 from .workers import PATIENCE_S, Tell, Workers
 
@@ -232,7 +232,7 @@ class WorkerPool:
             if self.client is not self._given:
                 self.client.close()
 
-    def submissions_of(self, place: Place) -> list[Submission]:
+    def submissions_of(self, place: SceneKey) -> list[Submission]:
         """Submissions of a picture, in the order of their begin."""
         own = [
             f for f in self.submissions if (f.task.scene, f.task.view) == (place.scene, place.view)

@@ -10,7 +10,7 @@ from itertools import groupby, pairwise
 from typing import TYPE_CHECKING, Any
 
 from .pool import Submission, WorkerPool
-from .task import Place, Task
+from .task import SceneKey, Task
 
 if TYPE_CHECKING:
     from daguerre.rendering.session import Session
@@ -40,7 +40,7 @@ class Sharing:
         place: The picture among the values of the pool.
     """
 
-    def __init__(self, session: Session, pool: WorkerPool, place: Place) -> None:
+    def __init__(self, session: Session, pool: WorkerPool, place: SceneKey) -> None:
         self.session, self.pool, self.place = session, pool, place
         self._take_s = self._add_s = self._task_s = 0.0  # of one answer, and of one task
         self._waited = 0.0

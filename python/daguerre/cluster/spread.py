@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from daguerre.rendering.ranges import Range, missing_ranges
 
 from .pool import GivenUp, WorkerPool
-from .task import Place, Task
+from .task import SceneKey, Task
 
 if TYPE_CHECKING:
     from daguerre.camera.camera import Camera
@@ -45,10 +45,10 @@ class Spread:
     def __init__(self, pool: WorkerPool, job: Job | None = None) -> None:
         self.pool, self.job = pool, job
         self._now = 0  # number of the picture under way
-        self._places: dict[int, Place] = {}
+        self._places: dict[int, SceneKey] = {}
         self._homes: dict[int, str] = {}
 
-    def open(self, session: Session) -> Place:
+    def open(self, session: Session) -> SceneKey:
         """Place of the picture that begins now."""
         if self.job is None:
             self.pool.drop_all()  # of a picture before that was stopped
@@ -152,7 +152,7 @@ class Spread:
                 return number
         return unfinished[0] if unfinished else None
 
-    def _place(self, number: int, session: Session | None = None) -> Place:
+    def _place(self, number: int, session: Session | None = None) -> SceneKey:
         """Place of a picture; with its session, workers need no pilot render."""
         if number not in self._places:
             assert self.job is not None
@@ -164,7 +164,7 @@ class Spread:
 
     def _kept(
         self, scene: Scene, camera: Camera, settings: RenderSettings, piloted: Plan | None
-    ) -> Place:
+    ) -> SceneKey:
         """Place of a picture; the pool keeps its values."""
         keep = self.pool.values.keep
-        return Place(keep(scene), keep((camera, settings, piloted)))
+        return SceneKey(keep(scene), keep((camera, settings, piloted)))

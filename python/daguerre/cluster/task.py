@@ -24,7 +24,7 @@ _DRAWS = threading.Lock()
 
 
 @dataclass(frozen=True)
-class Place:
+class SceneKey:
     """Hashes of a scene, and of its camera and settings."""
 
     scene: str

@@ -34,7 +34,7 @@ class LensFile:
 
 
 @dataclass(frozen=True)
-class View:
+class ExportedView:
     """A camera as other renderers know it: a pinhole or a thin lens before an upright film.
 
     Attributes:
@@ -80,7 +80,7 @@ class Outgoing:
     """
 
     scene: Scene
-    view: View
+    view: ExportedView
     resolution: tuple[int, int]
     spp: int
     max_depth: int

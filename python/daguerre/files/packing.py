@@ -123,7 +123,7 @@ def unpack(data: bytes, large: Callable[[str], bytes], make: Make | None = None)
         _, line, rest = data.split(b"\n", 2)
         body = json.loads(line)
         arrays = _arrays(body["arrays"], rest, large)
-        return _Reader(body["parts"], arrays, make).of(body["root"])
+        return _PackedReader(body["parts"], arrays, make).of(body["root"])
 
 
 _WRONG = (
@@ -273,7 +273,7 @@ def _class_of(name: str) -> type[Any] | None:
     return found if issubclass(found, Value) or dataclasses.is_dataclass(found) else None
 
 
-class _Reader:
+class _PackedReader:
     """Values of packed parts."""
 
     def __init__(

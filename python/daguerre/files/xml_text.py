@@ -50,7 +50,7 @@ def parse(data: bytes, file: str) -> Item:
     Raises:
         InputError: The bytes are not OpenCV's XML, or have features that calibrations do not need.
     """
-    reader = _Reader(file)
+    reader = _XmlReader(file)
     with xml_errors(file):
         reader.parser.Parse(data, True)
         value = None if reader.root is None else reader.root.value()
@@ -81,7 +81,7 @@ class _Element:
         return {**found, "data": [found["data"]]}  # a matrix of one number
 
 
-class _Reader:
+class _XmlReader:
     """Builds a tree from the events of expat."""
 
     def __init__(self, file: str) -> None:

@@ -19,7 +19,7 @@ from . import ktx2
 from .reading.kinds import KINDS
 from .reading.read import read
 from .reading.size import check_size
-from .reading.source import Source
+from .reading.source import PictureBytes
 
 #: Kinds of pictures that glTF has beside KTX2.
 _OF_GLTF = ("png", "jpeg", "webp")
@@ -45,7 +45,7 @@ def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[
         return ktx2.decode(data, where)
     if not is_of_gltf(data):
         raise InputError(f"{where}: wanted a PNG, JPEG, WebP or KTX2 image, got {short(data[:8])}")
-    pixels = read(Source(data=data), where).pixels
+    pixels = read(PictureBytes(data=data), where).pixels
     if pixels.shape[2] > 4:
         raise InputError(f"{where}: wanted 1 to 4 channels, got {pixels.shape[2]}")
     if pixels.dtype == np.uint8:
@@ -77,7 +77,7 @@ def read_file(path: Path, *, floats: bool = False) -> NDArray[Any]:
     """
     from .exr.reader import is_exr
 
-    source = Source(path)
+    source = PictureBytes(path)
     if is_exr(path):
         raise InputError(f"{path}: OpenEXR is not supported here")
     return read(source, str(path), floats=floats).pixels

@@ -22,9 +22,9 @@ from daguerre.files.reading import size_of
 
 from .images import upright
 from .radiance import as_rgbe, is_radiance, read_header
-from .reading.read import Picture, read
+from .reading.read import FilePicture, read
 from .reading.size import MAX_ENVIRONMENT_BYTES, check_size
-from .reading.source import Source
+from .reading.source import PictureBytes
 from .stated_colors import PLAIN, Colors, of_exr
 
 #: Largest colour channel of an environment: the sum of three still fits a float.
@@ -77,7 +77,7 @@ def read_light(file: Path) -> tuple[NDArray[np.float32], Colors]:
         return upright(light, turn), colors
     header = read_header(file) if is_radiance(file) else None
     with as_rgbe(file, header) if header else nullcontext(file) as source:
-        picture = read(Source(source), str(file), MAX_ENVIRONMENT_BYTES)
+        picture = read(PictureBytes(source), str(file), MAX_ENVIRONMENT_BYTES)
     pixels = picture.pixels
     if np.issubdtype(pixels.dtype, np.integer):
         scale = np.float32(np.iinfo(pixels.dtype).max)
@@ -118,7 +118,7 @@ def checked_light(file: Path, rgb: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.ascontiguousarray(rgb)
 
 
-def _rgb(picture: Picture, file: Path) -> NDArray[Any]:
+def _rgb(picture: FilePicture, file: Path) -> NDArray[Any]:
     """Selects the colour channels: R, G, B in any position, or a single grey channel."""
     pixels = picture.pixels
     names = [name.rsplit(".", 1)[-1].upper() for name in picture.names]

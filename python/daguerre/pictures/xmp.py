@@ -30,7 +30,7 @@ def xmp_tags(packet: bytes) -> dict[str, Any] | None:
     Returns:
         Numbers; fractions as pairs (numerator, denominator); texts. Of lists the first value.
     """
-    reader = _Reader()
+    reader = _XmpReader()
     try:
         reader.parser.Parse(packet.strip(b"\0 \t\r\n"), True)
     except (expat.ExpatError, LookupError, ValueError):
@@ -38,7 +38,7 @@ def xmp_tags(packet: bytes) -> dict[str, Any] | None:
     return reader.found
 
 
-class _Reader:
+class _XmpReader:
     """Collects properties of ``rdf:Description`` directly below ``rdf:RDF``."""
 
     def __init__(self) -> None:

@@ -11,7 +11,7 @@ from daguerre.errors import InputError, UsageError
 from daguerre.parameters.table import Table
 
 from .parameter import Parameter
-from .picture import Band, Canvas, Source
+from .picture import Band, Canvas, RowSource
 
 Values = Mapping[str, Any]
 
@@ -33,7 +33,7 @@ class Step:
         """Returns the source rows needed for these rows; they may lie beyond the picture."""
         return rows.grown(self.reach)
 
-    def prepare(self, source: Source) -> None:
+    def prepare(self, source: RowSource) -> None:
         """Reads the whole picture, band by band, before the first row is computed, if needed."""
 
     def apply(self, band: Band, rows: Rows) -> Band:

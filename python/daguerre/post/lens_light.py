@@ -90,10 +90,10 @@ def _over_frame(
     # The picture is upside down on the film, and the film's y is up: both signs flip.
     points = np.meshgrid(-np.linspace(x[0], x[1], ACROSS), np.linspace(y[0], y[1], DOWN))
     light = _relative(lens, np.stack(points, axis=-1).reshape(-1, 2), mixes, RAYS)
-    return Surface(light.reshape(DOWN, ACROSS, -1), canvas.width, canvas.height)
+    return CubicGrid(light.reshape(DOWN, ACROSS, -1), canvas.width, canvas.height)
 
 
-class Surface:
+class CubicGrid:
     """Cubic interpolation between nodes; the outer nodes are the centres of the outer pixels.
 
     Keys' cubic, a = -1/2, is exact for parabolas, and continues as a parabola beyond the nodes.

@@ -95,7 +95,7 @@ class Band:
         return replace(self, image=np.ascontiguousarray(image, np.float32))
 
 
-class Source(Protocol):
+class RowSource(Protocol):
     """Interface of a picture that can be read by rows."""
 
     @property
@@ -106,7 +106,7 @@ class Source(Protocol):
         """Returns these rows; all must be in the picture."""
 
 
-def bands(source: Source, height: int) -> Iterator[Band]:
+def bands(source: RowSource, height: int) -> Iterator[Band]:
     """Yields all rows of a picture from top to bottom, ``height`` at a time."""
     for begin in range(0, source.canvas.height, height):
         yield source.rows(Rows(begin, min(begin + height, source.canvas.height)))

@@ -10,7 +10,7 @@ from daguerre.convolution.rows import Rows
 
 from .effect import Step
 from .kernels import Floats
-from .picture import Band, Canvas, Image, Source, bands
+from .picture import Band, Canvas, Image, RowSource, bands
 
 SCAN = 256  # rows
 
@@ -54,7 +54,7 @@ class Veil(Step):
         self._colors = len(canvas.colors) - canvas.alpha
         self._kernel, self._factor, self._share = kernel, factor, np.float32(share)
 
-    def prepare(self, source: Source) -> None:
+    def prepare(self, source: RowSource) -> None:
         """Computes the veil from a reduced picture of all rows."""
         height = max(SCAN // self._factor, 1) * self._factor
         found = [

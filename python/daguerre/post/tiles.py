@@ -15,7 +15,7 @@ import numpy as np
 from daguerre.convolution.rows import Rows
 
 from .effect import Step
-from .picture import Band, Canvas, Source
+from .picture import Band, Canvas, RowSource
 
 BLOCK = 256  # rows
 
@@ -23,7 +23,7 @@ BLOCK = 256  # rows
 class Stage:
     """A step and its source, which together are a source again."""
 
-    def __init__(self, step: Step, source: Source) -> None:
+    def __init__(self, step: Step, source: RowSource) -> None:
         self.step, self.source = step, source
         height = source.canvas.height
         block = BLOCK if step.block is None else step.block
@@ -65,7 +65,7 @@ class WholeImage:
         return self._band.cut(rows)
 
 
-def chained(steps: Sequence[Step], source: Source) -> Source:
+def chained(steps: Sequence[Step], source: RowSource) -> RowSource:
     """Chains steps on a source; each step is prepared with the picture before it."""
     for step in steps:
         step.prepare(source)

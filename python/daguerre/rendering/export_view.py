@@ -10,7 +10,7 @@ import numpy as np
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure_mode import AUTOMATIC
-from daguerre.exporters.record import LensFile, View
+from daguerre.exporters.record import ExportedView, LensFile
 from daguerre.exposure.lux_seconds import compensation, display_gain
 from daguerre.files.notes import Notes
 from daguerre.lenses import LensSurface
@@ -29,11 +29,11 @@ _LEFT_OUT = {
 }
 
 
-def view_of(setup: ResolvedCamera, notes: Notes) -> View:
+def view_of(setup: ResolvedCamera, notes: Notes) -> ExportedView:
     """Makes the view of a camera at mid-exposure, and notes the properties that it lacks."""
     camera, lens = setup.camera, setup.lens
     _note_camera(setup, notes)
-    view = View(
+    view = ExportedView(
         np.asarray(setup.world_from_camera, np.float64),
         setup.frame_size_mm,
         setup.shift_mm,
@@ -76,7 +76,9 @@ def _radius_m(setup: ResolvedCamera) -> float:
     return lens.effective_focal_length_mm / lens.f_stop / 2e3
 
 
-def _with_lens(view: View, setup: ResolvedCamera, glass: Glass, notes: Notes) -> View:
+def _with_lens(
+    view: ExportedView, setup: ResolvedCamera, glass: Glass, notes: Notes
+) -> ExportedView:
     """Adds the prescription if pbrt can trace it; otherwise notes that a thin lens replaces it."""
     surfaces = glass.lens.surfaces
     if not all(_is_spherical(surface) for surface in surfaces) or any(setup.camera.tilt):

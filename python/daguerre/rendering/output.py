@@ -14,7 +14,7 @@ from daguerre.frame.aovs import Source, names_of
 
 from .parameters import PLATE
 from .photograph import Photograph, is_raw, shows_exposure
-from .reporter import Look, Reporter
+from .reporter import PreviewPicture, Reporter
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -187,14 +187,14 @@ class Output:
         facts = {"resolution": (session.width, session.height), "crop": session.crop}
         return replace(frame, metadata={**frame.metadata, **facts}, aovs={})
 
-    def look(self, frame: Frame, *, complete: bool = False) -> Look:
+    def look(self, frame: Frame, *, complete: bool = False) -> PreviewPicture:
         """Makes a preview of an incomplete picture, developed like the complete picture."""
         photograph = replace(self.photograph, bracket=())
 
         def write(path: Path) -> None:
             photograph.write(frame, [path], self.tone, Reporter())
 
-        return Look(frame, self.preview, write, complete)
+        return PreviewPicture(frame, self.preview, write, complete)
 
     @property
     def preview(self) -> Path:

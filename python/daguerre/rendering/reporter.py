@@ -57,7 +57,7 @@ class Stopped:
 
 
 @dataclass(frozen=True)
-class Look:
+class PreviewPicture:
     """A preview of a picture that is being drawn.
 
     Attributes:
@@ -88,7 +88,7 @@ class Reporter:
     def progress(self, status: Status) -> None:
         """Shows the progress of the picture; called several times a second."""
 
-    def preview(self, look: Look) -> None:
+    def preview(self, look: PreviewPicture) -> None:
         """Shows previews of a picture, and finally the complete picture."""
 
     def note(self, text: str) -> None:

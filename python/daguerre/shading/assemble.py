@@ -10,7 +10,7 @@ from daguerre.scene.materials import Gltf, Material, TextureSlot
 from .arithmetic import Arithmetic
 from .bake import Baker
 from .channels import Texel, Value, broadcast, fit
-from .surface import Surface
+from .surface import GltfInputs
 from .textures import Packed, Packer
 
 Fields = dict[str, Any]
@@ -53,7 +53,7 @@ class Assembler:
         self._packer = packer
         self._math = Arithmetic(baker)
 
-    def material(self, surface: Surface, name: str, *, whole: bool = False) -> Material:
+    def material(self, surface: GltfInputs, name: str, *, whole: bool = False) -> Material:
         """Material of a surface; ``whole``: with the parameters of layers that have no weight."""
         if not whole:
             _drop_weightless(surface)
@@ -83,7 +83,7 @@ class Assembler:
         self._film(surface.iridescence_thickness_nm, fields)
         return Material(Gltf(**fields), name=name)
 
-    def _base(self, surface: Surface, fields: Fields) -> None:
+    def _base(self, surface: GltfInputs, fields: Fields) -> None:
         """Colour and opacity share a texture."""
         color = broadcast(surface.base_color, 3)
         if surface.alpha_mode == "opaque":
@@ -95,7 +95,7 @@ class Assembler:
         fields["base_color"] = packed.factors[:3]
         fields["base_color_texture"] = packed.slot
 
-    def _metallic_roughness(self, surface: Surface, fields: Fields) -> None:
+    def _metallic_roughness(self, surface: GltfInputs, fields: Fields) -> None:
         packed = self._packer.packed((*surface.roughness[:1], *surface.metallic[:1]), places=(1, 2))
         fields["roughness"], fields["metallic"] = packed.factors
         fields["metallic_roughness_texture"] = packed.slot
@@ -157,9 +157,9 @@ class Assembler:
         fields["iridescence_thickness_texture"] = slot
 
 
-def _drop_weightless(surface: Surface) -> None:
+def _drop_weightless(surface: GltfInputs) -> None:
     """Resets the parameters of layers that have no weight."""
-    plain = Surface()
+    plain = GltfInputs()
     for weight, parameters in LAYERS.items():
         if getattr(surface, weight) == getattr(plain, weight):
             for name in parameters:

@@ -22,7 +22,7 @@ from .evaluate import Arguments, Context, Evaluator
 from .open_pbr import open_pbr_surface
 from .operations import OPERATIONS
 from .standard_surface import standard_surface
-from .surface import Surface
+from .surface import GltfInputs
 from .texture_nodes import file_of
 from .textures import Packer
 from .walks import moving_nodes, names_before
@@ -45,7 +45,7 @@ SURFACES = (
     "gltf_pbr",
     "surface_unlit",
 )
-_GREY = Surface(base_color=(0.18, 0.18, 0.18))
+_GREY = GltfInputs(base_color=(0.18, 0.18, 0.18))
 
 
 class Builder:
@@ -60,7 +60,7 @@ class Builder:
     def __init__(self, images: Images, baker: Baker, metres_per_unit: float) -> None:
         self._images = images
         self._baker = baker
-        self._surfaces: dict[str, Callable[[Arguments], Surface]] = {
+        self._surfaces: dict[str, Callable[[Arguments], GltfInputs]] = {
             "UsdPreviewSurface": preview_surface.preview_surface,
             "standard_surface": lambda given: standard_surface(given, metres_per_unit),
             "open_pbr_surface": lambda given: open_pbr_surface(given, metres_per_unit),
@@ -92,7 +92,7 @@ class Builder:
 
         return over_time(rest, at, _times(graph), context)
 
-    def _surface(self, evaluator: Evaluator, context: Context) -> Surface:
+    def _surface(self, evaluator: Evaluator, context: Context) -> GltfInputs:
         given = evaluator.surface()
         if given is None:
             context.notes.add("a material without a surface is grey")

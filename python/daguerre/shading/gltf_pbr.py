@@ -11,16 +11,16 @@ from .channels import Value
 from .evaluate import Arguments
 from .inputs import constant, constants, normal_of, refraction_index
 from .layers import is_set
-from .surface import Surface
+from .surface import GltfInputs
 
 _WHITE: Value = (1.0, 1.0, 1.0)
 _BLACK: Value = (0.0, 0.0, 0.0)
 _MODES = ("opaque", "mask", "blend")
 
 
-def gltf_pbr(given: Arguments, metres_per_unit: float) -> Surface:
+def gltf_pbr(given: Arguments, metres_per_unit: float) -> GltfInputs:
     """Reads the inputs of a gltf_pbr; lengths are in scene units."""
-    arithmetic, surface = given.context.math, Surface()
+    arithmetic, surface = given.context.math, GltfInputs()
     surface.base_color = given.value("base_color", _WHITE)
     surface.metallic = given.value("metallic", (1.0,))
     surface.roughness = given.value("roughness", (1.0,))
@@ -56,10 +56,10 @@ def gltf_pbr(given: Arguments, metres_per_unit: float) -> Surface:
     return surface
 
 
-def surface_unlit(given: Arguments) -> Surface:
+def surface_unlit(given: Arguments) -> GltfInputs:
     """Surface that emits to both sides and reflects nothing."""
     arithmetic = given.context.math
-    surface = Surface(base_color=_BLACK, specular=(0.0,), roughness=(1.0,), double_sided=True)
+    surface = GltfInputs(base_color=_BLACK, specular=(0.0,), roughness=(1.0,), double_sided=True)
     surface.emissive = arithmetic.multiply(
         given.value("emission_color", _WHITE), given.value("emission", (1.0,))
     )

@@ -25,7 +25,7 @@ from daguerre.scene.scene import Scene
 
 from . import udim
 from .channels import IDENTITY, Six
-from .picture import Picture
+from .picture import DecodedPicture
 from .picture_bytes import UnknownFormat, bytes_of, decoded, member, opened_package
 
 #: Finds the file of an asset path: ``resolve(place, path)``. The file need not exist; a path that
@@ -98,14 +98,14 @@ class Images(Textures):
         super().__init__(scene)
         self.resolve = resolve
         self._notes = notes
-        self._pictures: dict[str, Picture | None] = {}
-        self._lit: dict[str, Picture] = {}
+        self._pictures: dict[str, DecodedPicture | None] = {}
+        self._lit: dict[str, DecodedPicture] = {}
         self._unknown: set[str] = set()
         self._left = _most_bytes()
-        self._begun: dict[str, Future[Picture | None]] = {}
+        self._begun: dict[str, Future[DecodedPicture | None]] = {}
         self._pool = ThreadPoolExecutor(min(8, os.cpu_count() or 1))
 
-    def picture(self, place: str, path: str, *, is_data: bool = False) -> Picture | None:
+    def picture(self, place: str, path: str, *, is_data: bool = False) -> DecodedPicture | None:
         """Decodes the picture of an asset path.
 
         Args:
@@ -132,7 +132,7 @@ class Images(Textures):
             return None
         return found if is_data else self._light(place, path, found)
 
-    def _light(self, place: str, path: str, found: Picture) -> Picture:
+    def _light(self, place: str, path: str, found: DecodedPicture) -> DecodedPicture:
         """The picture with its colours converted, once, and notes."""
         if path not in self._lit:
             self._lit[path] = found
@@ -143,7 +143,7 @@ class Images(Textures):
                 self._counted(place, self._lit[path])
         return self._lit[path]
 
-    def _found(self, place: str, path: str) -> Picture | None:
+    def _found(self, place: str, path: str) -> DecodedPicture | None:
         begun = self._begun.pop(path, None)
         if begun is not None:
             return begun.result()
@@ -185,7 +185,7 @@ class Images(Textures):
             return None
         return self.texture(found.pixels, srgb=srgb, wrap=wrap, filter=filter, name=found.name)
 
-    def _one(self, place: str, path: str) -> Picture | None:
+    def _one(self, place: str, path: str) -> DecodedPicture | None:
         packaged = _PACKAGED.match(path)
         package = packaged["package"] if packaged else path
         file = self.resolve(place, package)
@@ -201,7 +201,7 @@ class Images(Textures):
         name = packaged["name"].rsplit("/", 1)[-1]
         return _picture(*decoded(data, name, where), name)
 
-    def _tiles(self, place: str, path: str) -> Picture | None:
+    def _tiles(self, place: str, path: str) -> DecodedPicture | None:
         """Stitches the tiles of a UDIM pattern."""
         packaged = _PACKAGED.match(path)
         if packaged:
@@ -231,13 +231,13 @@ class Images(Textures):
         name = path.rsplit("/", 1)[-1]
         return _picture(pixels, colors, name, grid.transform)
 
-    def _alike(self, tiles: dict[int, Picture]) -> dict[int, Picture]:
+    def _alike(self, tiles: dict[int, DecodedPicture]) -> dict[int, DecodedPicture]:
         """Tiles in linear Rec.709, for files that state different primaries."""
         for tile in tiles.values():
             tile.colors.tell(self._notes, tile.name)
         return {n: tile if tile.is_light else tile.light() for n, tile in tiles.items()}
 
-    def _counted(self, place: str, picture: Picture | None) -> Picture | None:
+    def _counted(self, place: str, picture: DecodedPicture | None) -> DecodedPicture | None:
         """Charges a picture to the limit of all."""
         self._left -= 0 if picture is None else picture.pixels.nbytes
         if self._left < 0:
@@ -248,10 +248,10 @@ class Images(Textures):
 
 def _picture(
     pixels: NDArray[Any], colors: Colors, name: str, transform: Six | None = None
-) -> Picture:
+) -> DecodedPicture:
     freeze_in_place(pixels)
     uses.decoded(pixels.nbytes)
-    return Picture(pixels, name, transform or IDENTITY, transform is not None, colors)
+    return DecodedPicture(pixels, name, transform or IDENTITY, transform is not None, colors)
 
 
 def _names(folder: Path) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from .channels import Value, numbers_of
 from .evaluate import Arguments
 from .inputs import constants
-from .surface import Surface
+from .surface import GltfInputs
 
 
 def is_set(value: Value) -> bool:
@@ -15,7 +15,7 @@ def is_set(value: Value) -> bool:
 
 
 def scattered(
-    given: Arguments, surface: Surface, base: Value, scatter: tuple[Value, Value], *, thin: bool
+    given: Arguments, surface: GltfInputs, base: Value, scatter: tuple[Value, Value], *, thin: bool
 ) -> Value:
     """Colour of diffuse light with subsurface scattering of a share and colour.
 
@@ -45,7 +45,7 @@ def coated(given: Arguments, base: Value, coat: Value, tint: Value) -> Value:
 
 
 def transmitted(
-    given: Arguments, surface: Surface, name: str, depth_m: float, *, thin: bool
+    given: Arguments, surface: GltfInputs, name: str, depth_m: float, *, thin: bool
 ) -> None:
     """Colour of transmitted light: a tint, or absorption that reaches it at a depth."""
     if not is_set(surface.transmission):
@@ -59,14 +59,14 @@ def transmitted(
     surface.base_color = arithmetic.mix(surface.base_color, tint, surface.transmission)
 
 
-def with_film(surface: Surface, share: Value, thickness_nm: Value, ior: float) -> None:
+def with_film(surface: GltfInputs, share: Value, thickness_nm: Value, ior: float) -> None:
     """Adds an iridescent film."""
     if is_set(share):
         surface.iridescence, surface.iridescence_ior = share, max(ior, 1.0)
         surface.iridescence_thickness_nm = thickness_nm
 
 
-def opaque_share(given: Arguments, surface: Surface, opacity: Value) -> None:
+def opaque_share(given: Arguments, surface: GltfInputs, opacity: Value) -> None:
     """Reads opacity as the covered share of the surface."""
     numbers = numbers_of(opacity)
     if numbers is not None and all(number >= 1 for number in numbers):

@@ -10,15 +10,15 @@ from .channels import Value
 from .evaluate import Arguments
 from .inputs import constant, normal_of, noted, openpbr_widths, refraction_index, stretched
 from .layers import coated, is_set, opaque_share, scattered, transmitted, with_film
-from .surface import Surface
+from .surface import GltfInputs
 
 _NM = 1000.0  # nm in the um of OpenPBR
 _WHITE: Value = (1.0, 1.0, 1.0)
 
 
-def open_pbr_surface(given: Arguments, metres_per_unit: float) -> Surface:
+def open_pbr_surface(given: Arguments, metres_per_unit: float) -> GltfInputs:
     """Reads the inputs of an open_pbr_surface; lengths are in scene units."""
-    arithmetic, surface = given.context.math, Surface()
+    arithmetic, surface = given.context.math, GltfInputs()
     surface.metallic = given.value("base_metalness", (0.0,))
     base = arithmetic.multiply(
         given.value("base_color", (0.8, 0.8, 0.8)), given.value("base_weight", (1.0,))
@@ -54,7 +54,7 @@ def open_pbr_surface(given: Arguments, metres_per_unit: float) -> Surface:
     return surface
 
 
-def _reflection(given: Arguments, surface: Surface) -> None:
+def _reflection(given: Arguments, surface: GltfInputs) -> None:
     surface.specular = given.value("specular_weight", (1.0,))
     surface.specular_color = given.value("specular_color", _WHITE)
     surface.ior = refraction_index(given, constant(given, "specular_ior", 1.5))
@@ -67,7 +67,7 @@ def _reflection(given: Arguments, surface: Surface) -> None:
     surface.clearcoat_normal = normal_of(given, "geometry_coat_normal")
 
 
-def _noted(given: Arguments, surface: Surface) -> None:
+def _noted(given: Arguments, surface: GltfInputs) -> None:
     """Notes on inputs without a counterpart, where they would be seen."""
     noted(given, "base_diffuse_roughness")
     if is_set(surface.transmission):

@@ -15,7 +15,7 @@ from .channels import IDENTITY, Plane, Six
 
 
 @dataclass(frozen=True, eq=False)
-class Picture:
+class DecodedPicture:
     """A decoded picture.
 
     Attributes:
@@ -37,7 +37,7 @@ class Picture:
         """Whether colours are in linear Rec.709, or sRGB, already; grey is grey in every space."""
         return self.colors.is_plain or self.pixels.shape[2] < 3
 
-    def light(self) -> Picture:
+    def light(self) -> DecodedPicture:
         """The picture with colours converted to linear Rec.709 from the file's encoding."""
         made = self.pixels.astype(np.float32)
         made[:, :, :3] = self.colors.light(made[:, :, :3])

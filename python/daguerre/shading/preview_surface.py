@@ -14,16 +14,16 @@ from __future__ import annotations
 from .channels import Value, numbers_of
 from .evaluate import Arguments
 from .inputs import normal_of, noted_displacement, refraction_index
-from .surface import Surface
+from .surface import GltfInputs
 
 #: Inputs that no picture needs: light transport makes the shadows of corners itself.
 IGNORED = frozenset({"occlusion", "displacement"})
 
 
-def preview_surface(given: Arguments) -> Surface:
+def preview_surface(given: Arguments) -> GltfInputs:
     """Reads the inputs of a UsdPreviewSurface."""
     diffuse = given.value("diffuseColor", (0.18, 0.18, 0.18))
-    surface = Surface(base_color=diffuse)
+    surface = GltfInputs(base_color=diffuse)
     surface.ior = refraction_index(given, given.number("ior", 1.5))
     surface.roughness = given.value("roughness", (0.5,))
     if given.number("useSpecularWorkflow", 0.0):
@@ -40,7 +40,7 @@ def preview_surface(given: Arguments) -> Surface:
     return surface
 
 
-def _opacity(given: Arguments, surface: Surface) -> None:
+def _opacity(given: Arguments, surface: GltfInputs) -> None:
     surface.alpha = given.value("opacity", (1.0,))
     threshold = given.number("opacityThreshold", 0.0)
     found = numbers_of(surface.alpha)
@@ -62,7 +62,7 @@ def _is_presence(given: Arguments) -> bool:
     return mode == "presence" if mode else given.number("opacityMode", 0.0) == 1.0
 
 
-def _sheet(given: Arguments, surface: Surface, opacity: float) -> None:
+def _sheet(given: Arguments, surface: GltfInputs, opacity: float) -> None:
     """Clear sheet with diffuse light: exact for grey; for other colours, exact in sum."""
     arithmetic = given.context.math
     clear = (1.0 - opacity,) * 3

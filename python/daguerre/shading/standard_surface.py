@@ -28,14 +28,14 @@ from .layers import (
     transmitted,
     with_film,
 )
-from .surface import Surface
+from .surface import GltfInputs
 
 _COAT_IOR = 1.5
 
 
-def standard_surface(given: Arguments, metres_per_unit: float) -> Surface:
+def standard_surface(given: Arguments, metres_per_unit: float) -> GltfInputs:
     """Reads the inputs of a standard_surface; lengths are in scene units."""
-    arithmetic, surface = given.context.math, Surface()
+    arithmetic, surface = given.context.math, GltfInputs()
     white: Value = (1.0, 1.0, 1.0)
     surface.metallic = given.value("metalness", (0.0,))
     base = arithmetic.multiply(
@@ -69,7 +69,7 @@ def standard_surface(given: Arguments, metres_per_unit: float) -> Surface:
     return surface
 
 
-def _reflection(given: Arguments, surface: Surface) -> None:
+def _reflection(given: Arguments, surface: GltfInputs) -> None:
     surface.specular = given.value("specular", (1.0,))
     surface.specular_color = given.value("specular_color", (1.0, 1.0, 1.0))
     surface.ior = refraction_index(given, constant(given, "specular_IOR", 1.5))
@@ -85,7 +85,7 @@ def _reflection(given: Arguments, surface: Surface) -> None:
     surface.clearcoat_normal = normal_of(given, "coat_normal")
 
 
-def _noted(given: Arguments, surface: Surface) -> None:
+def _noted(given: Arguments, surface: GltfInputs) -> None:
     """Notes on inputs without a counterpart, where they would be seen."""
     noted(given, "diffuse_roughness")
     if is_set(surface.transmission):

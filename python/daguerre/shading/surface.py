@@ -12,7 +12,7 @@ _WHITE: Value = (1.0, 1.0, 1.0)
 
 
 @dataclass
-class Surface:
+class GltfInputs:
     """Inputs of ``daguerre.scene.materials.Gltf`` as values; the names are the same.
 
     Attributes:

@@ -13,14 +13,14 @@ import daguerre as dg
 from daguerre.importers.pbrt import interpreter
 from daguerre.importers.pbrt.files import Files
 from daguerre.importers.pbrt.lexer import Lexer
-from daguerre.importers.pbrt.place import Place, Source
+from daguerre.importers.pbrt.place import FilePlace, SceneFile
 
 from .everything import everything
 from .text import SQUARE, count, counted, read, written
 
 
 class _NoFiles:
-    def enter(self, name: str, place: Place) -> Source:
+    def enter(self, name: str, place: FilePlace) -> SceneFile:
         place.fail(f"no files here: {name}")
 
     def leave(self) -> None:
@@ -28,7 +28,7 @@ class _NoFiles:
 
 
 def _values(text: str) -> object:
-    lexer = Lexer(Source("a.pbrt", text.encode()), _NoFiles())
+    lexer = Lexer(SceneFile("a.pbrt", text.encode()), _NoFiles())
     return lexer.values(lexer.place("Shape"))
 
 

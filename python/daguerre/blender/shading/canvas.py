@@ -18,7 +18,7 @@ from daguerre.checks import freeze_in_place
 from daguerre.shading.channels import Channel, Coordinate, Mapping, Plane, Texel, Value
 from daguerre.shading.lookup import looked_up
 
-from .surfaces import Surface
+from .surfaces import MaterialFaces
 
 Array = NDArray[Any]
 #: Longer side of the trial canvas of a material; only trial canvases are measured.
@@ -44,7 +44,9 @@ class Canvas(ABC):
         need: Texels that patterns and pictures want, per texel and axis, if this is a trial.
     """
 
-    def __init__(self, surface: Surface, primvar: str, span: Array, size: tuple[int, int]) -> None:
+    def __init__(
+        self, surface: MaterialFaces, primvar: str, span: Array, size: tuple[int, int]
+    ) -> None:
         self._surface = surface
         self.size = size
         self.need = 0.0
@@ -140,7 +142,7 @@ class SurfaceCanvas(Canvas):
         raster: Triangles at the texels.
     """
 
-    def __init__(self, surface: Surface, primvar: str, span: Array, raster: Raster) -> None:
+    def __init__(self, surface: MaterialFaces, primvar: str, span: Array, raster: Raster) -> None:
         height, width = raster.triangle.shape
         super().__init__(surface, primvar, span, (height, width))
         self._raster = raster

@@ -16,7 +16,7 @@ from daguerre.shading.arithmetic import Arithmetic
 from daguerre.shading.assemble import LAYERS
 from daguerre.shading.channels import Texel, Value, broadcast, numbers_of
 from daguerre.shading.layers import is_set
-from daguerre.shading.surface import Surface
+from daguerre.shading.surface import GltfInputs
 
 BLACK: Value = (0.0, 0.0, 0.0)
 WHITE: Value = (1.0, 1.0, 1.0)
@@ -38,27 +38,27 @@ class Closure:
         cover: Share of the surface that is there; light passes straight through the rest.
     """
 
-    surface: Surface | None = None
+    surface: GltfInputs | None = None
     emission: Value = BLACK
     cover: Value = (1.0,)
 
 
-def mirror(arithmetic: Arithmetic, color: Value, roughness: Value) -> Surface:
+def mirror(arithmetic: Arithmetic, color: Value, roughness: Value) -> GltfInputs:
     """Gloss of a constant reflectance; its largest channel is also that at grazing angles."""
     most = arithmetic.baker.combined(lambda *c: np.maximum(np.maximum(c[0], c[1]), c[2]), *color)
     share = arithmetic.divide(color, (most,))
-    surface = Surface(base_color=BLACK, roughness=roughness, ior=0.0, double_sided=True)
+    surface = GltfInputs(base_color=BLACK, roughness=roughness, ior=0.0, double_sided=True)
     surface.specular, surface.specular_color = (most,), broadcast(share, 3)
     return surface
 
 
-def is_diffuse(surface: Surface) -> bool:
+def is_diffuse(surface: GltfInputs) -> bool:
     """Whether a surface has nothing but diffuse light, on one or both sides."""
     weights = (surface.specular, surface.metallic, surface.transmission, surface.clearcoat)
     return not any(is_set(weight) for weight in (*weights, surface.sheen_color))
 
 
-def is_mirror(surface: Surface) -> bool:
+def is_mirror(surface: GltfInputs) -> bool:
     """Whether a surface has nothing but gloss of a constant reflectance."""
     clear = is_set(surface.transmission) or is_set(surface.metallic)
     return surface.ior == 0.0 and not clear and surface.base_color == BLACK
@@ -79,8 +79,8 @@ def mixed(math: Arithmetic, a: Closure, b: Closure, share: Value) -> tuple[Closu
 
 
 def _one_surface(
-    math: Arithmetic, a: Surface | None, b: Surface | None, share: Value
-) -> tuple[Surface | None, bool]:
+    math: Arithmetic, a: GltfInputs | None, b: GltfInputs | None, share: Value
+) -> tuple[GltfInputs | None, bool]:
     if share == (0.0,) or share == (1.0,) or (a is None and b is None):
         return (b if share == (1.0,) else a), True
     if a is None or b is None:
@@ -98,7 +98,7 @@ def _one_surface(
     return parameters_mixed(math, a, b, share), alike
 
 
-def _glossed(math: Arithmetic, diffuse: Surface, gloss: Surface, share: Value) -> Surface:
+def _glossed(math: Arithmetic, diffuse: GltfInputs, gloss: GltfInputs, share: Value) -> GltfInputs:
     """Diffuse light under gloss: (1 - share) of the diffuse lobe, share of the glossy lobe.
 
     The renderer dims layers below gloss of reflectance f by 1 - f, which is undone here.
@@ -118,26 +118,26 @@ def _glossed(math: Arithmetic, diffuse: Surface, gloss: Surface, share: Value) -
     )
 
 
-def dimmed(math: Arithmetic, surface: Surface, share: Value) -> Surface:
+def dimmed(math: Arithmetic, surface: GltfInputs, share: Value) -> GltfInputs:
     """Surface that scatters a share of its light."""
     names = ("base_color", "specular", "sheen_color", "clearcoat", "diffuse_transmission_color")
     less: dict[str, Any] = {name: math.multiply(getattr(surface, name), share) for name in names}
     return replace(surface, **less)
 
 
-def as_metal(math: Arithmetic, surface: Surface) -> Surface:
+def as_metal(math: Arithmetic, surface: GltfInputs) -> GltfInputs:
     """Gloss in the form of a metal, for a mix with a surface of another kind."""
     if not is_mirror(surface):
         return surface
     color = math.multiply(surface.specular_color, surface.specular)
-    plain = Surface()
+    plain = GltfInputs()
     return replace(
         surface, base_color=color, metallic=(1.0,), ior=plain.ior,
         specular=plain.specular, specular_color=plain.specular_color,
     )  # fmt: skip
 
 
-def parameters_mixed(math: Arithmetic, a: Surface, b: Surface, share: Value) -> Surface:
+def parameters_mixed(math: Arithmetic, a: GltfInputs, b: GltfInputs, share: Value) -> GltfInputs:
     """Surface with mixed parameters; the heavier surface gives parameters that are no values."""
     a, b = _with_layers(a, b), _with_layers(b, a)
     heavier = b if _mean(share) > 0.5 else a
@@ -146,14 +146,14 @@ def parameters_mixed(math: Arithmetic, a: Surface, b: Surface, share: Value) -> 
     elif not is_set(b.specular) and is_set(a.specular):
         heavier = a
     found: dict[str, Any] = {}
-    for field in fields(Surface):
+    for field in fields(GltfInputs):
         first, second = getattr(a, field.name), getattr(b, field.name)
         if isinstance(first, tuple) and isinstance(second, tuple) and first != second:
             found[field.name] = math.mix(first, second, share)
     return replace(heavier, **found)
 
 
-def _with_layers(surface: Surface, other: Surface) -> Surface:
+def _with_layers(surface: GltfInputs, other: GltfInputs) -> GltfInputs:
     """Surface with parameters of the other surface in its layers without weight."""
     taken = {
         name: getattr(other, name)
@@ -210,11 +210,11 @@ def _added_clear(math: Arithmetic, a: Closure, b: Closure) -> tuple[Closure, boo
     return Closure(other.surface or clear.surface, emission, cover), exact
 
 
-def _passes(surface: Surface) -> bool:
+def _passes(surface: GltfInputs) -> bool:
     return is_set(surface.diffuse_transmission)
 
 
-def _strength(surface: Surface) -> float:
+def _strength(surface: GltfInputs) -> float:
     """Rough measure of the light that a surface scatters."""
     diffuse = sum(_level(channel) for channel in surface.base_color) / len(surface.base_color)
     return diffuse + (_level(surface.specular[0]) if surface.ior == 0.0 else 0.0)

@@ -13,7 +13,7 @@ from daguerre.blender.raster import Raster, rasterized
 from daguerre.shading.materialx.graph import Constant, Graph, Link, Node
 
 from .canvas import TRIAL, Canvas, SurfaceCanvas, UvCanvas
-from .surfaces import ATLAS, Surface
+from .surfaces import ATLAS, MaterialFaces
 from .texture_nodes import ACTIVE
 
 Array = NDArray[Any]
@@ -108,7 +108,7 @@ def side_of(need: float, most: int, atlas: bool) -> int:
     return int(max(min(side, MOST, most), min(least, most)))
 
 
-def canvas_of(reads: Reads, surface: Surface, side: int) -> Canvas | None:
+def canvas_of(reads: Reads, surface: MaterialFaces, side: int) -> Canvas | None:
     """Canvas of a surface; None: there is nothing to lie on.
 
     Args:
@@ -130,7 +130,7 @@ def canvas_of(reads: Reads, surface: Surface, side: int) -> Canvas | None:
     return SurfaceCanvas(surface, primvar, span, raster)
 
 
-def _span(surface: Surface, primvar: str) -> Array | None:
+def _span(surface: MaterialFaces, primvar: str) -> Array | None:
     """Least and largest texture coordinates; None: missing or not finite."""
     if surface.layer(primvar) is None:
         return None
@@ -147,14 +147,14 @@ def _size(span: Array, side: int) -> tuple[int, int]:
     return up, across
 
 
-def _is_flat(surface: Surface, primvar: str, span: Array) -> bool:
+def _is_flat(surface: MaterialFaces, primvar: str, span: Array) -> bool:
     """Whether a map does not overlap itself, and leaves no face out."""
     if np.mean(surface.uv_areas(primvar) <= 1e-12) > _OVERLAP:
         return False
     return _raster(surface, primvar, span, _size(span, _PROBE)).overlap <= _OVERLAP
 
 
-def _raster(surface: Surface, primvar: str, span: Array, size: tuple[int, int]) -> Raster:
+def _raster(surface: MaterialFaces, primvar: str, span: Array, size: tuple[int, int]) -> Raster:
     corners = (surface.uv(primvar).astype(np.float64) - span[0]) / (span[1] - span[0])
     corners[:, :, 1] = 1 - corners[:, :, 1]
     return rasterized(corners * np.array([size[1], size[0]]), size)

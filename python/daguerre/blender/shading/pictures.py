@@ -22,7 +22,7 @@ from daguerre.files.notes import Notes, Silence
 from daguerre.scene.scene import Scene
 from daguerre.shading import udim
 from daguerre.shading.images import Textures
-from daguerre.shading.picture import Picture
+from daguerre.shading.picture import DecodedPicture
 from daguerre.shading.picture_bytes import bytes_of, decoded
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ class Pictures(Textures):
     def __init__(self, scene: Scene, notes: Notes, limit: int | None = None) -> None:
         super().__init__(scene)
         self._notes = notes
-        self._pictures: dict[str, Picture | None] = {}
+        self._pictures: dict[str, DecodedPicture | None] = {}
         free = memory.left_bytes()
         most = MAX_BYTES if free is None else min(MAX_BYTES, int(_SHARE * free))
         self._limit = most if limit is None else limit
@@ -97,7 +97,7 @@ class Pictures(Textures):
         finally:
             self._notes = notes
 
-    def picture(self, place: str, path: str, *, is_data: bool = False) -> Picture | None:
+    def picture(self, place: str, path: str, *, is_data: bool = False) -> DecodedPicture | None:
         """Pixels of an image by its full name; None, and a note: it has none.
 
         Raises:
@@ -109,7 +109,7 @@ class Pictures(Textures):
             self._notes.add("an image without pixels is magenta")
         return self._pictures[path]
 
-    def _read(self, place: str, path: str) -> Picture | None:
+    def _read(self, place: str, path: str) -> DecodedPicture | None:
         import bpy
 
         image = next((one for one in bpy.data.images if one.name_full == path), None)
@@ -125,9 +125,9 @@ class Pictures(Textures):
         pixels = _pixels(image)
         if pixels is None:
             return None
-        return Picture(freeze_in_place(pixels), str(image.name))
+        return DecodedPicture(freeze_in_place(pixels), str(image.name))
 
-    def _tiled(self, place: str, image: bpy.types.Image) -> Picture | None:
+    def _tiled(self, place: str, image: bpy.types.Image) -> DecodedPicture | None:
         tiles = {}
         for number, name, data in _tiles(place, image):
             tiles[number], colors = decoded(data, name, f"{place}: {name}")
@@ -143,7 +143,7 @@ class Pictures(Textures):
         if halved:
             self._notes.add("UDIM tiles are halved, as all of them are too large")
         freeze_in_place(pixels)
-        return Picture(pixels, str(image.name), grid.transform, tiled=True)
+        return DecodedPicture(pixels, str(image.name), grid.transform, tiled=True)
 
     def _charge(self, place: str, size: int) -> None:
         self._left -= size

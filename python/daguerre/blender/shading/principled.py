@@ -14,7 +14,7 @@ from daguerre.blender.settings import LUMENS_PER_WATT
 from daguerre.shading.channels import Value
 from daguerre.shading.inputs import refraction_index, stretched
 from daguerre.shading.layers import coated, is_set, with_film
-from daguerre.shading.surface import Surface
+from daguerre.shading.surface import GltfInputs
 
 from .closures import WHITE, Closure
 from .sockets import Sockets
@@ -27,7 +27,7 @@ _STRETCH = 0.9
 def principled(sockets: Sockets) -> Closure:
     """Reads the sockets of a Principled BSDF."""
     math = sockets.math
-    surface = Surface(double_sided=True)
+    surface = GltfInputs(double_sided=True)
     surface.metallic = math.fraction(sockets.one("Metallic"))
     base = sockets.value("Base Color")
     _reflection(sockets, surface)
@@ -71,7 +71,7 @@ def normal_of(sockets: Sockets, name: str = "Normal") -> Value | None:
     return found
 
 
-def anisotropic(sockets: Sockets, surface: Surface, name: str, rotation: str) -> None:
+def anisotropic(sockets: Sockets, surface: GltfInputs, name: str, rotation: str) -> None:
     """Stretches highlights: GGX widths r^2 / q and r^2 q, q = sqrt(1 - 0.9 a) (Burley 2012)."""
     amount = sockets.one(name)
     if not is_set(amount):
@@ -89,7 +89,7 @@ def anisotropic(sockets: Sockets, surface: Surface, name: str, rotation: str) ->
     surface.anisotropy_rotation = 360.0 * sockets.number(rotation)
 
 
-def _reflection(sockets: Sockets, surface: Surface) -> None:
+def _reflection(sockets: Sockets, surface: GltfInputs) -> None:
     """Specular light: the level scales reflectance at normal incidence, 0.5 changing nothing."""
     math = sockets.math
     surface.roughness = math.fraction(sockets.one("Roughness"))
@@ -104,7 +104,7 @@ def _reflection(sockets: Sockets, surface: Surface) -> None:
     anisotropic(sockets, surface, "Anisotropic", "Anisotropic Rotation")
 
 
-def _subsurface(sockets: Sockets, surface: Surface, base: Value, *, thin: bool) -> None:
+def _subsurface(sockets: Sockets, surface: GltfInputs, base: Value, *, thin: bool) -> None:
     """Scattering below the surface; out of a thin wall a share of (1 + g) / 2 goes on.
 
     g is the anisotropy. Cycles of Blender 5.2 shows these shares within 0.1 %.
@@ -120,7 +120,7 @@ def _subsurface(sockets: Sockets, surface: Surface, base: Value, *, thin: bool) 
     surface.diffuse_transmission_color = base
 
 
-def _coat(sockets: Sockets, surface: Surface) -> None:
+def _coat(sockets: Sockets, surface: GltfInputs) -> None:
     surface.clearcoat_roughness = sockets.math.fraction(sockets.one("Coat Roughness"))
     surface.clearcoat_normal = normal_of(sockets, "Coat Normal")
     if is_set(surface.clearcoat) and sockets.number("Coat IOR") != _COAT_IOR:

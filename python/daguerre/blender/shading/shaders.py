@@ -13,7 +13,7 @@ from daguerre.blender.settings import LUMENS_PER_WATT
 from daguerre.shading.channels import numbers_of
 from daguerre.shading.inputs import refraction_index
 from daguerre.shading.layers import is_set, with_film
-from daguerre.shading.surface import Surface
+from daguerre.shading.surface import GltfInputs
 
 from .closures import BLACK, WHITE, Closure, mirror
 from .principled import anisotropic, emitted, normal_of, principled
@@ -64,7 +64,7 @@ def glossy(sockets: Sockets) -> Closure:
 
 def metallic(sockets: Sockets) -> Closure:
     """Metallic BSDF: by the colour at normal incidence, or by complex indices."""
-    surface = Surface(metallic=(1.0,), double_sided=True)
+    surface = GltfInputs(metallic=(1.0,), double_sided=True)
     surface.roughness = sockets.math.fraction(sockets.one("Roughness"))
     if sockets.text("fresnel_type") == "PHYSICAL_CONDUCTOR":
         n, k = sockets.value("IOR"), sockets.value("Extinction")
@@ -106,7 +106,7 @@ def refraction(sockets: Sockets) -> Closure:
 
 def sheen(sockets: Sockets) -> Closure:
     """Sheen BSDF, over black."""
-    surface = Surface(base_color=BLACK, specular=(0.0,), double_sided=True)
+    surface = GltfInputs(base_color=BLACK, specular=(0.0,), double_sided=True)
     surface.sheen_color = sockets.math.fraction(sockets.value("Color"))
     surface.sheen_roughness = sockets.math.fraction(sockets.one("Roughness"))
     return Closure(surface)
@@ -115,7 +115,7 @@ def sheen(sockets: Sockets) -> Closure:
 def specular(sockets: Sockets) -> Closure:
     """Specular BSDF: a diffuse colour, and the reflectance at normal incidence."""
     math = sockets.math
-    surface = Surface(ior=0.0, double_sided=True)
+    surface = GltfInputs(ior=0.0, double_sided=True)
     surface.base_color = sockets.value("Base Color")
     surface.specular_color = sockets.value("Specular")
     surface.roughness = math.fraction(sockets.one("Roughness"))
@@ -142,15 +142,15 @@ def transparent(sockets: Sockets) -> Closure:
     return Closure(None, BLACK, sockets.math.fraction(sockets.math.subtract((1.0,), mean)))
 
 
-def _matte(sockets: Sockets) -> Surface:
-    surface = Surface(specular=(0.0,), roughness=(1.0,), double_sided=True)
+def _matte(sockets: Sockets) -> GltfInputs:
+    surface = GltfInputs(specular=(0.0,), roughness=(1.0,), double_sided=True)
     surface.base_color = sockets.value("Color")
     surface.normal = normal_of(sockets)
     return surface
 
 
-def _clear(sockets: Sockets) -> Surface:
-    surface = Surface(transmission=(1.0,), volume=True, double_sided=True)
+def _clear(sockets: Sockets) -> GltfInputs:
+    surface = GltfInputs(transmission=(1.0,), volume=True, double_sided=True)
     surface.base_color = sockets.math.fraction(sockets.value("Color"))
     surface.roughness = sockets.math.fraction(sockets.one("Roughness"))
     surface.ior = refraction_index(sockets.given, sockets.number("IOR"))

@@ -21,7 +21,7 @@ ATLAS = "\natlas"
 
 
 @dataclass
-class Surface:
+class MaterialFaces:
     """Faces of a mesh that have one material.
 
     Attributes:

@@ -12,7 +12,7 @@ import numpy as np
 from daguerre.cli import console
 from daguerre.errors import DaguerreError
 from daguerre.files import atomic
-from daguerre.rendering.reporter import Look
+from daguerre.rendering.reporter import PreviewPicture
 
 from .protocols import Pixels
 from .screen import Screen
@@ -36,7 +36,7 @@ class Preview:
         self.works = True
         self._told: set[Path] = set()
 
-    def show(self, look: Look, screen: Screen | None) -> None:
+    def show(self, look: PreviewPicture, screen: Screen | None) -> None:
         """Shows a preview; a failure ends previews, but not the render.
 
         Args:
@@ -54,14 +54,14 @@ class Preview:
             self.works = False
             console.warn(f"--preview: {error}; the preview stops")
 
-    def _write(self, look: Look) -> None:
+    def _write(self, look: PreviewPicture) -> None:
         look.write(look.path)
         if look.path not in self._told:
             self._told.add(look.path)
             console.note(f"preview: {look.path}")
 
 
-def _pixels(look: Look) -> Pixels:
+def _pixels(look: PreviewPicture) -> Pixels:
     """Pixels of the picture as in a file, (H, W, 3)."""
     import OpenImageIO as oiio
 

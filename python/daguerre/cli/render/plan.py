@@ -24,7 +24,7 @@ from daguerre.scene.scene import Scene
 from . import checks, crops
 from .frames import check_names, frame_numbers
 from .photograph import mode_notes, photograph_of
-from .views import Cameras, View, check_places
+from .views import CallView, Cameras, check_places
 
 #: Frames before and after the exposures that motion vectors need, and a little more.
 _NEXT = 1.5
@@ -119,7 +119,7 @@ def _output(
     return Output(flags.paths, tuple(groups), flags.denoise, noisy, flags.tone, photograph, is_pass)
 
 
-def _output_of(output: Output, view: View, settings: RenderSettings) -> Output:
+def _output_of(output: Output, view: CallView, settings: RenderSettings) -> Output:
     """Makes the output of a camera, which may have another picture size."""
     if DISPARITY in output.aovs and not view.shift:
         raise UsageError("--aov disparity needs --stereo")

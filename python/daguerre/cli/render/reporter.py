@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from daguerre.cli import console, progress
 from daguerre.rendering.job import shown
 from daguerre.rendering.progress import Status
-from daguerre.rendering.reporter import Finished, Look, Reporter, Stopped
+from daguerre.rendering.reporter import Finished, PreviewPicture, Reporter, Stopped
 
 if TYPE_CHECKING:
     from daguerre.cli.preview.preview import Preview
@@ -43,7 +43,7 @@ class ConsoleReporter(Reporter):
         """Whether previews are shown."""
         return self._preview is not None and self._preview.works
 
-    def preview(self, look: Look) -> None:
+    def preview(self, look: PreviewPicture) -> None:
         """Shows a preview, in the terminal or in a file."""
         if self._preview is None or not self._preview.works:
             return

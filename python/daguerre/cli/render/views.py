@@ -30,7 +30,7 @@ SIDES = {"left": -0.5, "right": 0.5}
 
 
 @dataclass(frozen=True)
-class View:
+class CallView:
     """One camera of a call.
 
     Attributes:
@@ -86,7 +86,7 @@ class Cameras:
     plate: PlateCamera | None = None
     start: float = 0.0
 
-    def views(self, stereo: str | None) -> list[View]:
+    def views(self, stereo: str | None) -> list[CallView]:
         """Views of the cameras, with both views of a stereo pair."""
         found = {name: c.starting(self.start) for name, c in self.flags.found.items()}
         views = views_of(self.names, found, stereo)
@@ -121,7 +121,7 @@ class Cameras:
                 fps = rates.setdefault(name, one.view.camera(scene).fps)
                 found.check(one.frame, scene.time + (one.frame or 0) / fps, fps)
 
-    def size(self, view: View, res: str | None, scene: Scene | None = None) -> tuple[int, int]:
+    def size(self, view: CallView, res: str | None, scene: Scene | None = None) -> tuple[int, int]:
         """Size of a camera's picture, px; None: the scene's file, which may set it, is not read.
 
         Raises:
@@ -137,7 +137,7 @@ class Cameras:
 
 def views_of(
     camera: str | None, calibrations: Mapping[str, Calibration], stereo: str | None
-) -> list[View]:
+) -> list[CallView]:
     """Views of ``--camera``, ``--calibration`` and ``--stereo``.
 
     Raises:
@@ -159,12 +159,12 @@ def views_of(
         if not 0 < baseline < 1e6:
             raise UsageError(f"--stereo: wanted a distance above 0 and below 1e6 m, got {stereo!r}")
         only = next(iter(calibrations.values()), None)
-        return [View(name, names[0], only, side * baseline) for name, side in SIDES.items()]
+        return [CallView(name, names[0], only, side * baseline) for name, side in SIDES.items()]
     if len(calibrations) > 1:
-        return [View(name, names[0], one) for name, one in calibrations.items()]
+        return [CallView(name, names[0], one) for name, one in calibrations.items()]
     for name, one in calibrations.items():
-        return [View(each or name, each, one) for each in names]
-    return [View(each or "", each) for each in names]
+        return [CallView(each or name, each, one) for each in names]
+    return [CallView(each or "", each) for each in names]
 
 
 def _names(text: str) -> list[str]:
@@ -177,7 +177,7 @@ def _names(text: str) -> list[str]:
     return names
 
 
-def check_places(outputs: list[Path], views: list[View]) -> None:
+def check_places(outputs: list[Path], views: list[CallView]) -> None:
     """Checks that ``{camera}`` in file names has named cameras.
 
     Raises:

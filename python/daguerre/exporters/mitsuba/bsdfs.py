@@ -15,18 +15,18 @@ from daguerre.exporters.outgoing.folder import OutgoingFolder
 from daguerre.exporters.outgoing.pictures import (
     BLACK,
     WHITE,
+    BakedPicture,
     Colored,
     Number,
-    Picture,
     changed,
     each,
     scaled,
 )
 from daguerre.exporters.outgoing.surfaces import (
     Blend,
+    ExportedMaterial,
     Glass,
     Lambert,
-    Look,
     Metal,
     Nothing,
     Plastic,
@@ -55,14 +55,14 @@ class Bsdfs:
         self.values = Values(folder, notes)
         self._known: dict[int, str] = {}
 
-    def id_of(self, index: int, look: Look) -> str:
+    def id_of(self, index: int, look: ExportedMaterial) -> str:
         """Id of the BSDF of a material, which is added before its first use."""
         if index not in self._known:
             self._known[index] = f"material-{index}"
             self._add_look(look, self._known[index])
         return self._known[index]
 
-    def _add_look(self, look: Look, name: str) -> None:
+    def _add_look(self, look: ExportedMaterial, name: str) -> None:
         parent = self._root
         if look.opacity != 1:
             parent = add(parent, "bsdf", type="mask", id=name)
@@ -126,7 +126,7 @@ class Bsdfs:
         alpha = surface.rough.u
         if _is_black(surface.color) and _is_black(surface.tint):
             self._add(parent, Lambert(BLACK), name)
-        elif isinstance(alpha, Picture):
+        elif isinstance(alpha, BakedPicture):
             self._add_textured_plastic(parent, surface, alpha, name)
         elif surface.compensated and not surface.rough.smooth:
             self._add_rough_plastic(parent, surface, name)
@@ -138,7 +138,7 @@ class Bsdfs:
             self._add_round(bsdf, surface)
 
     def _add_textured_plastic(
-        self, parent: Element, surface: Plastic, alpha: Picture, name: str
+        self, parent: Element, surface: Plastic, alpha: BakedPicture, name: str
     ) -> None:
         self._notes.add(
             "texture of roughness on a coat is written with Mitsuba's principled, which has a "
@@ -156,7 +156,7 @@ class Bsdfs:
         a diffuse surface, and the coat's reflection makes up for the share of this part.
         """
         rough, share = surface.rough, 0.0
-        assert not isinstance(rough.u, Picture)
+        assert not isinstance(rough.u, BakedPicture)
         loss = Loss(max(surface.ior, 1.0), rough.u, rough.distribution, surface.saturates)
         if rough.u > _EVEN_FROM and not _is_black(surface.color):
             self._notes.add(
@@ -243,6 +243,6 @@ class Bsdfs:
 
 def _is_black(color: Colored) -> bool:
     """Whether nothing is reflected; Mitsuba then divides 0 by 0 for its choice of lobes."""
-    if isinstance(color, Picture):
+    if isinstance(color, BakedPicture):
         return bool(color.pixels.max() <= 0)
     return max(color.values if isinstance(color, Spectrum) else color) <= 0

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from daguerre.exporters.record import Outgoing, View
+from daguerre.exporters.record import ExportedView, Outgoing
 from daguerre.files.notes import Notes
 from daguerre.importers.mitsuba.transforms import TURN
 
@@ -33,7 +33,7 @@ class _Window:
     offset: tuple[int, int]
 
     @classmethod
-    def of(cls, view: View, resolution: tuple[int, int], notes: Notes) -> _Window:
+    def of(cls, view: ExportedView, resolution: tuple[int, int], notes: Notes) -> _Window:
         """Finds the window of a shift, which is rounded to whole pixels."""
         pitches = (side / count for side, count in zip(view.film_mm, resolution, strict=True))
         shift = [mm / pitch for mm, pitch in zip(view.shift_mm, pitches, strict=True)]
@@ -73,12 +73,12 @@ def add_sensor(root: Element, outgoing: Outgoing) -> Element:
     return sensor
 
 
-def _field(view: View, wider: float) -> float:
+def _field(view: ExportedView, wider: float) -> float:
     """Horizontal field of view, degrees, of a film that is so many times as wide, centred."""
     return math.degrees(2 * math.atan(wider * view.film_mm[0] / 2 / view.film_distance_mm))
 
 
-def _add_shift(sensor: Element, view: View) -> None:
+def _add_shift(sensor: Element, view: ExportedView) -> None:
     """Adds the shift as shares of width and height: to the right and down."""
     for name, shift, side, sign in zip("xy", view.shift_mm, view.film_mm, (1, -1), strict=True):
         if shift:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from daguerre.exporters.outgoing.media import PlainMedium, plain_medium
-from daguerre.exporters.outgoing.surfaces import Look
+from daguerre.exporters.outgoing.surfaces import ExportedMaterial
 from daguerre.files.notes import Notes
 from daguerre.scene.media import Medium
 
@@ -29,7 +29,7 @@ class Media:
         self._add(root, self._fog, id="fog")
         add(sensor, "ref", name="medium", id="fog")
 
-    def add_sides(self, shape: Element, look: Look) -> None:
+    def add_sides(self, shape: Element, look: ExportedMaterial) -> None:
         """Adds the media on both sides of a shape; glass keeps the fog out."""
         inside = plain_medium(look.inside, self._notes)
         if inside is not None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from daguerre.exporters.outgoing.folder import OutgoingFolder
 from daguerre.exporters.outgoing.picture_file import write_pixels
-from daguerre.exporters.outgoing.pictures import IDENTITY, Colored, Number, Picture
+from daguerre.exporters.outgoing.pictures import IDENTITY, BakedPicture, Colored, Number
 from daguerre.exporters.outgoing.spectra import samples
 from daguerre.files.notes import Notes
 from daguerre.scene.spectrum import Spectrum
@@ -64,7 +64,7 @@ class Values:
 
     def color(self, parent: Element, name: str, value: Colored) -> None:
         """Adds a colour, a spectrum or a bitmap."""
-        if isinstance(value, Picture):
+        if isinstance(value, BakedPicture):
             self.bitmap(parent, name, value, raw=False)
         elif isinstance(value, Spectrum):
             pairs = ", ".join(f"{_text(nm)}:{_text(v)}" for nm, v in samples(value))
@@ -74,7 +74,7 @@ class Values:
 
     def factor(self, parent: Element, name: str, value: Colored) -> None:
         """Adds a factor on light; above 1 Mitsuba refuses an ``rgb`` of a surface."""
-        if isinstance(value, Picture | Spectrum) or max(value) <= 1:
+        if isinstance(value, BakedPicture | Spectrum) or max(value) <= 1:
             self.color(parent, name, value)
             return
         bright = add(parent, "spectrum", type="srgb", name=name)
@@ -83,12 +83,12 @@ class Values:
 
     def number(self, parent: Element, name: str, value: Number) -> None:
         """Adds a number or a bitmap."""
-        if isinstance(value, Picture):
+        if isinstance(value, BakedPicture):
             self.bitmap(parent, name, value, raw=True)
         else:
             add_value(parent, "float", name, float(value))
 
-    def bitmap(self, parent: Element, name: str, picture: Picture, *, raw: bool) -> None:
+    def bitmap(self, parent: Element, name: str, picture: BakedPicture, *, raw: bool) -> None:
         """Adds a bitmap; ``raw``: its numbers are no colours."""
         if picture.wrap[0] != picture.wrap[1]:  # Mitsuba has one mode for both axes
             picture = picture.without_mirrors()
@@ -110,7 +110,7 @@ class Values:
             add_matrix(texture, "to_uv", [[a, b, 0, c], [d, e, 0, f], [0, 0, 1, 0], [0, 0, 0, 1]])
 
 
-def coded(picture: Picture, raw: bool) -> Any:
+def coded(picture: BakedPicture, raw: bool) -> Any:
     """Pixels as a file that Mitsuba decodes to the same values.
 
     Mitsuba takes 8-bit pixels for sRGB unless they are raw, so linear pixels become floats.

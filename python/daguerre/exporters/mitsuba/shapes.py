@@ -7,7 +7,7 @@ import numpy as np
 from daguerre.exporters.outgoing.meshes import MeshFiles
 from daguerre.exporters.outgoing.placing import Placed, mirrored
 from daguerre.exporters.outgoing.ply import Place
-from daguerre.exporters.outgoing.surfaces import Emission, Look
+from daguerre.exporters.outgoing.surfaces import Emission, ExportedMaterial
 
 from .bsdfs import Bsdfs
 from .media import Media
@@ -18,7 +18,12 @@ class Shapes:
     """Shapes of a file."""
 
     def __init__(
-        self, root: Element, looks: list[Look], bsdfs: Bsdfs, meshes: MeshFiles, media: Media
+        self,
+        root: Element,
+        looks: list[ExportedMaterial],
+        bsdfs: Bsdfs,
+        meshes: MeshFiles,
+        media: Media,
     ) -> None:
         self._root, self._looks, self._bsdfs, self._meshes = root, looks, bsdfs, meshes
         self._media = media

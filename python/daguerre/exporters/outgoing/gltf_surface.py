@@ -15,8 +15,18 @@ from daguerre.scene.materials import Gltf, TextureSlot
 from daguerre.scene.media import Medium
 from daguerre.scene.spectrum import Spectrum
 
-from .pictures import BLACK, WHITE, Baker, Color, Colored, Number, Picture, each, scaled
-from .surfaces import Blend, Emission, Glass, Lambert, Look, Metal, Plastic, Rough, Surface
+from .pictures import BLACK, WHITE, BakedPicture, Baker, Color, Colored, Number, each, scaled
+from .surfaces import (
+    Blend,
+    Emission,
+    ExportedMaterial,
+    Glass,
+    Lambert,
+    Metal,
+    Plastic,
+    Rough,
+    Surface,
+)
 from .texture_sets import uv_set_of
 
 #: Highest reflectance at normal incidence that is written as an index of refraction.
@@ -41,15 +51,20 @@ class _Interface:
     tint: Colored
 
 
-def gltf_look(kind: Gltf, baker: Baker) -> Look:
+def gltf_look(kind: Gltf, baker: Baker) -> ExportedMaterial:
     """Translates a glTF material, without the emission of the material that holds it."""
     base = baker.color(kind.base_color_texture, kind.base_color)
     if kind.unlit:
-        return Look(Lambert(BLACK), _opacity(kind, baker), emission=Emission(base, True),
-                    uv_set=_uv_set(kind, baker), vertex_colors=True)  # fmt: skip
+        return ExportedMaterial(
+            Lambert(BLACK),
+            _opacity(kind, baker),
+            emission=Emission(base, True),
+            uv_set=_uv_set(kind, baker),
+            vertex_colors=True,
+        )
     _note_extensions(kind, baker)
     surface = _glossy(kind, base, baker) if kind.specular_glossiness else _rough(kind, base, baker)
-    return Look(
+    return ExportedMaterial(
         surface,
         _opacity(kind, baker),
         baker.normals(kind.normal_texture, kind.normal_scale),
@@ -84,7 +99,7 @@ def _glossy(kind: Gltf, base: Colored, baker: Baker) -> Surface:
     alpha = each(baker.number(texture, kind.glossiness, 3), lambda gloss: (1 - gloss) ** 2)
     f0 = baker.color(texture, kind.specular_color)
     assert not isinstance(f0, Spectrum)  # glTF has none
-    if isinstance(f0, Picture):
+    if isinstance(f0, BakedPicture):
         baker.notes.add("texture of a glTF specular colour is written as its mean")
         f0 = f0.mean
     interface = _of_f0(f0, baker)
@@ -117,7 +132,7 @@ def _of_f0(f0: Color, baker: Baker) -> _Interface:
 
 
 def _mixed(first: Surface, second: Surface, amount: Number) -> Surface:
-    if not isinstance(amount, Picture):
+    if not isinstance(amount, BakedPicture):
         if amount <= 0:
             return first
         if amount >= 1:
@@ -132,7 +147,7 @@ def _opacity(kind: Gltf, baker: Baker) -> Number:
     if kind.alpha_mode != "mask":
         return alpha
     cut = kind.alpha_cutoff
-    if isinstance(alpha, Picture):
+    if isinstance(alpha, BakedPicture):
         baker.notes.add("alpha mask of a glTF material is cut at its texels, not between them")
     return each(alpha, lambda a: (np.asarray(a) >= cut).astype(np.float32))
 

@@ -19,14 +19,14 @@ from daguerre.scene.scene import Scene
 from daguerre.scene.spectrum import Spectrum
 
 from .gltf_surface import gltf_look
-from .pictures import Baker, Color, Colored, Number, Picture, each
+from .pictures import BakedPicture, Baker, Color, Colored, Number, each
 from .spectra import rgb_of, steps_of
 from .surfaces import (
     Blend,
     Emission,
+    ExportedMaterial,
     Glass,
     Lambert,
-    Look,
     Metal,
     Nothing,
     Plastic,
@@ -44,16 +44,16 @@ class Looks:
         self._materials, self._baker = scene.materials, baker
         self._notes = baker.notes
 
-    def all(self) -> list[Look]:
+    def all(self) -> list[ExportedMaterial]:
         """Looks by the index of their material."""
         return [self._look(material) for material in self._materials]
 
-    def _look(self, material: Material) -> Look:
+    def _look(self, material: Material) -> ExportedMaterial:
         kind = material.kind
         look = gltf_look(kind, self._baker) if isinstance(kind, Gltf) else self._plain(material)
         if not isinstance(kind, Gltf) or material.opacity_texture or material.opacity != 1:
             own = self._baker.number(material.opacity_texture, material.opacity, 0)
-            if isinstance(own, Picture) and isinstance(look.opacity, Picture):
+            if isinstance(own, BakedPicture) and isinstance(look.opacity, BakedPicture):
                 self._notes.add("second texture of opacity is written as its mean")
             look = replace(look, opacity=_product(look.opacity, own))
         if material.profile is not None:
@@ -65,11 +65,11 @@ class Looks:
         look = replace(look, inside=inside, outside=material.exterior, two_sided=material.two_sided)
         return self._with_emission(look, material)
 
-    def _plain(self, material: Material) -> Look:
+    def _plain(self, material: Material) -> ExportedMaterial:
         slots = [*_slots(material), *_slots(material.kind)]
         if isinstance(material.kind, Coated):
             slots += _slots(material.kind.base)
-        return Look(
+        return ExportedMaterial(
             self.surface(material.kind),
             normals=self._baker.normals(material.normal_texture, material.normal_scale),
             uv_set=uv_set_of(slots, self._notes),
@@ -138,7 +138,7 @@ class Looks:
         kept = kind.energy_compensation
         return Plastic(base.color, kind.ior, rough, tint, kind.nonlinear, kept)
 
-    def _with_emission(self, look: Look, material: Material) -> Look:
+    def _with_emission(self, look: ExportedMaterial, material: Material) -> ExportedMaterial:
         """Adds the emission of a material to the emission of its kind."""
         if max(material.emission) <= 0:
             return look
@@ -154,14 +154,14 @@ class Looks:
         return replace(look, emission=Emission(self._sum(own.color, more), both))
 
     def _sum(self, light: Colored, more: Colored) -> Colored:
-        if isinstance(light, Picture) and isinstance(more, Picture):
+        if isinstance(light, BakedPicture) and isinstance(more, BakedPicture):
             self._notes.add("second texture of emission is written as its mean")
             more = more.mean
-        if isinstance(more, Picture):
+        if isinstance(more, BakedPicture):
             light, more = more, light
-        assert not isinstance(more, Picture)
+        assert not isinstance(more, BakedPicture)
         rgb = rgb_of(more) if isinstance(more, Spectrum) else more
-        if isinstance(light, Picture):
+        if isinstance(light, BakedPicture):
             return light.mapped(lambda value: value + rgb)
         own = rgb_of(light) if isinstance(light, Spectrum) else light
         return own[0] + rgb[0], own[1] + rgb[1], own[2] + rgb[2]
@@ -173,7 +173,7 @@ def _slots(owner: object) -> list[TextureSlot]:
 
 def _product(a: Number, b: Number) -> Number:
     """Product of numbers; of two pictures, the first times the mean of the second."""
-    if isinstance(b, Picture) and not isinstance(a, Picture):
+    if isinstance(b, BakedPicture) and not isinstance(a, BakedPicture):
         a, b = b, a
-    factor = float(b.linear.mean()) if isinstance(b, Picture) else b
+    factor = float(b.linear.mean()) if isinstance(b, BakedPicture) else b
     return a if factor == 1 else each(a, lambda value: value * factor)

@@ -11,7 +11,7 @@ from daguerre.scene.scene import Scene
 
 from .folder import OutgoingFolder
 from .ply import Place, ply_bytes
-from .surfaces import Look
+from .surfaces import ExportedMaterial
 
 
 class MeshFiles:
@@ -34,7 +34,7 @@ class MeshFiles:
         self._v_up = v_up
         self._known: dict[tuple[int, int, bytes], str] = {}
 
-    def path(self, index: int, look: Look, place: Place | None = None) -> str:
+    def path(self, index: int, look: ExportedMaterial, place: Place | None = None) -> str:
         """Path of a mesh for a material, relative to the scene file.
 
         Args:

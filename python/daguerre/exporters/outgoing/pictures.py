@@ -28,7 +28,7 @@ IDENTITY: Transform = (1, 0, 0, 0, 1, 0)
 
 
 @dataclass(frozen=True, eq=False)
-class Picture:
+class BakedPicture:
     """Pixels of one use of a texture, row 0 on top.
 
     Attributes:
@@ -47,7 +47,7 @@ class Picture:
     uv_set: int = 0
     transform: Transform = IDENTITY
 
-    def mapped(self, change: Callable[[Floats], NDArray[Any]]) -> Picture:
+    def mapped(self, change: Callable[[Floats], NDArray[Any]]) -> BakedPicture:
         """Returns a picture of changed linear values."""
         return replace(self, pixels=np.asarray(change(self.linear), np.float32), srgb=False)
 
@@ -65,7 +65,7 @@ class Picture:
         red, green, blue = np.broadcast_to(self.linear.mean(axis=(0, 1)), 3).tolist()
         return red, green, blue
 
-    def without_mirrors(self, axes: tuple[bool, bool] = (True, True)) -> Picture:
+    def without_mirrors(self, axes: tuple[bool, bool] = (True, True)) -> BakedPicture:
         """Returns a picture that repeats instead of mirroring: the mirror image is part of it."""
         pixels, wrap, rows = (
             self.pixels,
@@ -81,8 +81,8 @@ class Picture:
         return replace(self, pixels=pixels, wrap=(wrap[0], wrap[1]), transform=made)
 
 
-Number = float | Picture
-Colored = Color | Spectrum | Picture
+Number = float | BakedPicture
+Colored = Color | Spectrum | BakedPicture
 BLACK: Color = (0.0, 0.0, 0.0)
 WHITE: Color = (1.0, 1.0, 1.0)
 
@@ -117,7 +117,7 @@ class Baker:
         made = _picture(texture, slot, _channels(texture, (channel,)), srgb=not plain)
         return made if factor == 1 else made.mapped(lambda light: light * np.float32(factor))
 
-    def normals(self, slot: TextureSlot | None, scale: float) -> Picture | None:
+    def normals(self, slot: TextureSlot | None, scale: float) -> BakedPicture | None:
         """Normal map of a slot, with its scale in it; None: no normal map, or no effect."""
         if slot is None or scale == 0:
             return None
@@ -135,12 +135,12 @@ class Baker:
 
 def each(value: Number, change: Callable[[Any], Any]) -> Number:
     """Applies a function to a number or to each pixel."""
-    return value.mapped(change) if isinstance(value, Picture) else float(change(value))
+    return value.mapped(change) if isinstance(value, BakedPicture) else float(change(value))
 
 
 def changed(color: Colored, change: Callable[[Any], Any]) -> Colored:
     """Applies a function to a colour, to each sample of a spectrum, or to each pixel."""
-    if isinstance(color, Picture):
+    if isinstance(color, BakedPicture):
         return color.mapped(change)
     if isinstance(color, Spectrum):
         return Spectrum(color.wavelengths_nm, tuple(change(np.array(color.values)).tolist()))
@@ -175,7 +175,7 @@ def _channels(texture: Texture, wanted: tuple[int, ...]) -> NDArray[Any]:
 
 def _picture(
     texture: Texture, slot: TextureSlot, pixels: NDArray[Any], *, srgb: bool = True
-) -> Picture:
+) -> BakedPicture:
     coded = texture.srgb and srgb and pixels.dtype == np.uint8
     nearest = texture.filter == "nearest"
-    return Picture(pixels, coded, texture.wrap, nearest, slot.uv_set, slot.transform)
+    return BakedPicture(pixels, coded, texture.wrap, nearest, slot.uv_set, slot.transform)

@@ -12,7 +12,7 @@ from daguerre.scene.media import Medium
 from daguerre.scene.spectrum import Spectrum
 from daguerre.scene.surfaces.facets import Distribution
 
-from .pictures import BLACK, WHITE, Colored, Number, Picture
+from .pictures import BLACK, WHITE, BakedPicture, Colored, Number
 
 #: Roughness (alpha) below which a surface is smooth, as in the core.
 SMOOTH = 1e-3
@@ -141,13 +141,13 @@ class Emission:
     @property
     def present(self) -> bool:
         """Whether there is any."""
-        if isinstance(self.color, Picture):
+        if isinstance(self.color, BakedPicture):
             return bool(self.color.pixels.max() > 0)
         return not isinstance(self.color, Spectrum) and max(self.color) > 0
 
 
 @dataclass(frozen=True)
-class Look:
+class ExportedMaterial:
     """All parts of a material.
 
     Attributes:
@@ -164,7 +164,7 @@ class Look:
 
     surface: Surface
     opacity: Number = 1.0
-    normals: Picture | None = None
+    normals: BakedPicture | None = None
     emission: Emission = field(default_factory=Emission)
     inside: Medium | None = None
     outside: Medium | None = None
@@ -185,4 +185,4 @@ def _clear(surface: Surface) -> bool:
 
 
 def _is_smooth(alpha: Number) -> bool:
-    return not isinstance(alpha, Picture) and alpha < SMOOTH
+    return not isinstance(alpha, BakedPicture) and alpha < SMOOTH

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from daguerre.exporters.outgoing.folder import OutgoingFolder, plain_name
-from daguerre.exporters.record import LensFile, Outgoing, View
+from daguerre.exporters.record import ExportedView, LensFile, Outgoing
 
 from .text import Text, floats, integer, string
 
@@ -46,7 +46,7 @@ def add_camera(text: Text, outgoing: Outgoing, folder: OutgoingFolder, stem: str
     _add_film(text, outgoing, stem)
 
 
-def _add_ideal(text: Text, view: View) -> None:
+def _add_ideal(text: Text, view: ExportedView) -> None:
     left, right, bottom, top = view.window
     short = min(right - left, top - bottom)
     parameters = [floats("fov", math.degrees(2 * math.atan(short / 2)))]

@@ -5,13 +5,20 @@ from __future__ import annotations
 from daguerre.exporters.outgoing.coats import base_below, sheet_ior
 from daguerre.exporters.outgoing.folder import OutgoingFolder
 from daguerre.exporters.outgoing.picture_file import write_pixels
-from daguerre.exporters.outgoing.pictures import BLACK, IDENTITY, WHITE, Colored, Number, Picture
+from daguerre.exporters.outgoing.pictures import (
+    BLACK,
+    IDENTITY,
+    WHITE,
+    BakedPicture,
+    Colored,
+    Number,
+)
 from daguerre.exporters.outgoing.spectra import samples
 from daguerre.exporters.outgoing.surfaces import (
     Blend,
+    ExportedMaterial,
     Glass,
     Lambert,
-    Look,
     Metal,
     Nothing,
     Plastic,
@@ -36,7 +43,7 @@ class Materials:
         self._known: dict[int, str] = {}
         self._textures: dict[str, str] = {}
 
-    def name_of(self, index: int, look: Look) -> str:
+    def name_of(self, index: int, look: ExportedMaterial) -> str:
         """Name of the material of a look, which is added before its first use."""
         if index not in self._known:
             if not look.two_sided:
@@ -47,19 +54,19 @@ class Materials:
 
     def number(self, name: str, value: Number) -> Parameter:
         """Makes a parameter of a number or of a texture of numbers."""
-        if isinstance(value, Picture):
+        if isinstance(value, BakedPicture):
             return texture(name, self._texture("float", value))
         return floats(name, float(value))
 
     def color(self, name: str, value: Colored) -> Parameter:
         """Makes a parameter of a colour or of a texture of colours."""
-        if isinstance(value, Picture):
+        if isinstance(value, BakedPicture):
             return texture(name, self._texture("spectrum", value))
         if isinstance(value, Spectrum):
             return spectrum(name, samples(value))
         return rgb(name, value)
 
-    def _normals(self, look: Look) -> list[Parameter]:
+    def _normals(self, look: ExportedMaterial) -> list[Parameter]:
         if look.normals is None:
             return []
         if look.normals.transform != IDENTITY:
@@ -179,7 +186,7 @@ class Materials:
                 for n, value in (("u", rough.u), ("v", rough.v)))  # fmt: skip
         return [u, v, plain]
 
-    def _texture(self, kind: str, picture: Picture) -> str:
+    def _texture(self, kind: str, picture: BakedPicture) -> str:
         made = picture.without_mirrors()
         a, b, c, d, e, f = made.transform
         if b or d:

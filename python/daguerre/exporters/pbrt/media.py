@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from daguerre.exporters.outgoing.media import PlainMedium, plain_medium
-from daguerre.exporters.outgoing.surfaces import Look
+from daguerre.exporters.outgoing.surfaces import ExportedMaterial
 from daguerre.files.notes import Notes
 from daguerre.scene.media import Medium
 
@@ -26,7 +26,7 @@ class Media:
             self._make(_FOG, self._fog)
             self._text.line(f'MediumInterface "" "{_FOG}"')
 
-    def names_of(self, index: int, look: Look) -> tuple[str, str] | None:
+    def names_of(self, index: int, look: ExportedMaterial) -> tuple[str, str] | None:
         """Names of the media inside and outside of a material's meshes; None: as around it.
 
         Media are added before their first use.

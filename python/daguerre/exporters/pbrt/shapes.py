@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from daguerre.exporters.outgoing.meshes import MeshFiles
 from daguerre.exporters.outgoing.picture_file import write_pixels
-from daguerre.exporters.outgoing.pictures import IDENTITY, Picture
+from daguerre.exporters.outgoing.pictures import IDENTITY, BakedPicture
 from daguerre.exporters.outgoing.placing import Placed
-from daguerre.exporters.outgoing.surfaces import Emission, Look
+from daguerre.exporters.outgoing.surfaces import Emission, ExportedMaterial
 
 from .materials import Materials
 from .media import Media
@@ -19,7 +19,7 @@ class Shapes:
     def __init__(
         self,
         text: Text,
-        looks: list[Look],
+        looks: list[ExportedMaterial],
         materials: Materials,
         meshes: MeshFiles,
         media: Media,
@@ -61,7 +61,7 @@ class Shapes:
             self._text.directive("AreaLightSource", "diffuse", *self._emission(look.emission))
         self._text.directive("Shape", "plymesh", *shape)
 
-    def _shape(self, placed: Placed, look: Look) -> list[Parameter]:
+    def _shape(self, placed: Placed, look: ExportedMaterial) -> list[Parameter]:
         parameters = [string("filename", self._meshes.path(placed.mesh, look))]
         if look.opacity != 1:
             parameters.append(self._materials.number("alpha", look.opacity))
@@ -70,7 +70,7 @@ class Shapes:
     def _emission(self, emission: Emission) -> list[Parameter]:
         light = emission.color
         sides = flag("twosided", emission.both_sides)
-        if not isinstance(light, Picture):
+        if not isinstance(light, BakedPicture):
             return [self._materials.color("L", light), sides]
         notes = self._materials.notes
         if light.transform != IDENTITY or light.wrap != ("repeat", "repeat"):

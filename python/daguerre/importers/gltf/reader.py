@@ -90,7 +90,7 @@ def read(
             found = _packed(document.packed, file, notes, other=other)
             if found is not None:
                 return found
-        return _Reader(file, float(time), variant, document, notes).read(scene_index)
+        return _GltfReader(file, float(time), variant, document, notes).read(scene_index)
 
 
 def _packed(chunk: memoryview, path: Path, notes: Notes, *, other: bool) -> Scene | None:
@@ -109,7 +109,7 @@ def _packed(chunk: memoryview, path: Path, notes: Notes, *, other: bool) -> Scen
         return None
 
 
-class _Reader:
+class _GltfReader:
     def __init__(
         self, path: Path, time: float, variant: str | None, document: Document, notes: Notes
     ) -> None:

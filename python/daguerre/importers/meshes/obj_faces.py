@@ -55,7 +55,7 @@ def read_faces(lines: Lines, counts: list[int], where: str) -> Faces:
     before = [lines.of(word) for word in ("v", "vt", "vn")]
     sizes, corners = [np.zeros(0, np.int64)], [np.zeros((0, 3), np.int64)]
     for begin in range(0, len(chosen), _SOME):
-        reader = _Reader(lines, chosen[begin : begin + _SOME], where)
+        reader = _FaceReader(lines, chosen[begin : begin + _SOME], where)
         sizes.append(reader.sizes)
         corners.append(reader.resolved(counts, before))
     each, index = np.concatenate(sizes), np.concatenate(corners)
@@ -67,7 +67,7 @@ def read_faces(lines: Lines, counts: list[int], where: str) -> Faces:
     return Faces(each, points, uv, normals, small)
 
 
-class _Reader:
+class _FaceReader:
     """Corners of some lines.
 
     Attributes:

@@ -94,7 +94,7 @@ def read_header(data: Bytes, where: str) -> Header:
     Raises:
         InputError: The header is not valid PLY 1.0; the message names the line.
     """
-    reader = _Reader(where)
+    reader = _PlyHeaderReader(where)
     text = data[:_MOST_BYTES].tobytes()
     begin = 0
     while not reader.ended:
@@ -106,7 +106,7 @@ def read_header(data: Bytes, where: str) -> Header:
     return reader.header(begin)
 
 
-class _Reader:
+class _PlyHeaderReader:
     """Reads the lines of a header."""
 
     def __init__(self, where: str) -> None:

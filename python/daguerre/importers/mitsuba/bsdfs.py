@@ -24,7 +24,7 @@ from daguerre.scene.materials import (
 )
 
 from .ior import relative_index
-from .look import Look
+from .look import Appearance
 from .node import Node
 from .principled import principled, principled_thin
 from .textures import Textures
@@ -44,30 +44,30 @@ class Surfaces:
     def __init__(self, textures: Textures, notes: Notes) -> None:
         self.textures, self.notes = textures, notes
 
-    def look(self, node: Node) -> Look | None:
+    def look(self, node: Node) -> Appearance | None:
         """Look of a material; None: the plugin is not read here."""
         read = _PLUGINS.get(node.plugin)
         return None if read is None else read(self, node)
 
-    def _diffuse(self, node: Node) -> Look:
+    def _diffuse(self, node: Node) -> Appearance:
         painted = self.textures.painted(node, "reflectance")
         if painted is not None:
-            return Look(Diffuse(painted.factors), attribute=painted.attribute)
+            return Appearance(Diffuse(painted.factors), attribute=painted.attribute)
         reflectance, texture = self.textures.tint(node, "reflectance", 0.5)
-        return Look(Diffuse(reflectance, texture))
+        return Appearance(Diffuse(reflectance, texture))
 
-    def _transmitter(self, node: Node) -> Look:
+    def _transmitter(self, node: Node) -> Appearance:
         """Diffuse transmission (``difftrans`` of Mitsuba 0.6)."""
         transmittance, texture = self.textures.tint(node, "transmittance", 0.5)
         kind = Diffuse((0.0, 0.0, 0.0), transmittance=transmittance, transmittance_texture=texture)
-        return Look(kind, two_sided=True)
+        return Appearance(kind, two_sided=True)
 
-    def _conductor(self, node: Node) -> Look:
-        return Look(self._metal(node, 0.0, {}))
+    def _conductor(self, node: Node) -> Appearance:
+        return Appearance(self._metal(node, 0.0, {}))
 
-    def _rough_conductor(self, node: Node) -> Look:
+    def _rough_conductor(self, node: Node) -> Appearance:
         fields = self._roughness(node)
-        return Look(self._metal(node, fields.pop("alpha"), fields))
+        return Appearance(self._metal(node, fields.pop("alpha"), fields))
 
     def _metal(self, node: Node, alpha: float, fields: dict[str, Any]) -> Conductor:
         reflectance, texture = self.textures.tint(node, "specular_reflectance", 1.0)
@@ -92,14 +92,14 @@ class Surfaces:
         )
         return Conductor(**made, eta=eta, k=k)
 
-    def _dielectric(self, node: Node) -> Look:
-        return Look(self._glass(node, {}), two_sided=True)
+    def _dielectric(self, node: Node) -> Appearance:
+        return Appearance(self._glass(node, {}), two_sided=True)
 
-    def _rough_dielectric(self, node: Node) -> Look:
-        return Look(self._glass(node, self._roughness(node)), two_sided=True)
+    def _rough_dielectric(self, node: Node) -> Appearance:
+        return Appearance(self._glass(node, self._roughness(node)), two_sided=True)
 
-    def _thin_dielectric(self, node: Node) -> Look:
-        return Look(self._glass(node, {"thin": True}), two_sided=True)
+    def _thin_dielectric(self, node: Node) -> Appearance:
+        return Appearance(self._glass(node, {"thin": True}), two_sided=True)
 
     def _glass(self, node: Node, fields: dict[str, Any]) -> Dielectric:
         share = self.textures.share
@@ -110,13 +110,13 @@ class Surfaces:
             **fields,
         )
 
-    def _plastic(self, node: Node) -> Look:
+    def _plastic(self, node: Node) -> Appearance:
         return self._coated(node, {})
 
-    def _rough_plastic(self, node: Node) -> Look:
+    def _rough_plastic(self, node: Node) -> Appearance:
         return self._coated(node, self._roughness(node) | {"energy_compensation": False})
 
-    def _coated(self, node: Node, fields: dict[str, Any]) -> Look:
+    def _coated(self, node: Node, fields: dict[str, Any]) -> Appearance:
         kind = Coated(
             Diffuse(*self.textures.tint(node, "diffuse_reflectance", 0.5)),
             ior=relative_index(node, "polypropylene"),
@@ -124,15 +124,15 @@ class Surfaces:
             nonlinear=node.flag("nonlinear", False),
             **fields,
         )
-        return Look(kind)
+        return Appearance(kind)
 
-    def _null(self, node: Node) -> Look:
-        return Look(Boundary(), two_sided=True)
+    def _null(self, node: Node) -> Appearance:
+        return Appearance(Boundary(), two_sided=True)
 
-    def _principled(self, node: Node) -> Look:
+    def _principled(self, node: Node) -> Appearance:
         return principled(node, self.textures, self.notes)
 
-    def _principled_thin(self, node: Node) -> Look:
+    def _principled_thin(self, node: Node) -> Appearance:
         return principled_thin(node, self.textures, self.notes)
 
     def _roughness(self, node: Node) -> dict[str, Any]:
@@ -164,7 +164,7 @@ def _over(value: Color | Spectrum, outside: float) -> Color | Spectrum:
     return r, g, b
 
 
-_PLUGINS: dict[str, Callable[[Surfaces, Node], Look]] = {
+_PLUGINS: dict[str, Callable[[Surfaces, Node], Appearance]] = {
     "diffuse": Surfaces._diffuse,
     "difftrans": Surfaces._transmitter,
     "conductor": Surfaces._conductor,

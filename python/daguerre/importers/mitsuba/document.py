@@ -74,7 +74,7 @@ class Document:
         self._budget = Budget(MAX_ELEMENTS, "elements in all files")
         self._files: dict[int, Files] = {}
         self.includes = Includes()
-        self.root = _Reader(self, files, str(file), 0, 0).root(read_bytes(file, MAX_BYTES))
+        self.root = _DocumentReader(self, files, str(file), 0, 0).root(read_bytes(file, MAX_BYTES))
         if self.root.kind != "scene":
             self.root.fail("the root element must be <scene>")
         self._resolve()
@@ -142,7 +142,7 @@ def _check_depth(root: Node) -> None:
                 waiting.append((child, False))
 
 
-class _Reader:
+class _DocumentReader:
     """Reads one file.
 
     Args:
@@ -234,7 +234,7 @@ class _Reader:
             entry.fail(f"too many nested includes: the limit is {MAX_INCLUDES}")
         path = self._files.need(element.get("filename"), entry)
         inside = self._files.within(path.parent)
-        reader = _Reader(self._document, inside, str(path), self._includes + 1, self._depth)
+        reader = _DocumentReader(self._document, inside, str(path), self._includes + 1, self._depth)
         with asked_by(entry):
             data = read_bytes(path, MAX_BYTES)
         self._document.includes.count(path, len(data), entry)
@@ -274,12 +274,12 @@ class _Reader:
         return Property(name, "transform", product(steps, parts), entry, parts)
 
 
-_DIRECTIVES: dict[str, Callable[[_Reader, Node, Element, Entry], None]] = {
-    "default": _Reader._default,
-    "include": _Reader._include,
-    "path": _Reader._path,
-    "alias": _Reader._alias,
-    "ref": _Reader._ref,
+_DIRECTIVES: dict[str, Callable[[_DocumentReader, Node, Element, Entry], None]] = {
+    "default": _DocumentReader._default,
+    "include": _DocumentReader._include,
+    "path": _DocumentReader._path,
+    "alias": _DocumentReader._alias,
+    "ref": _DocumentReader._ref,
 }
 
 

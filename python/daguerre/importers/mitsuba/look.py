@@ -28,14 +28,14 @@ class Relief:
 class Blend:
     """Two looks, and the share of the second: a factor on a texture."""
 
-    first: Look
-    second: Look
+    first: Appearance
+    second: Appearance
     amount: float = 0.5
     amount_texture: TextureSlot | None = None
 
 
 @dataclass(frozen=True)
-class Look:
+class Appearance:
     """Appearance of a surface.
 
     Attributes:
@@ -65,7 +65,7 @@ class Look:
         direct = frozenset(() if self.relief is None else (self.relief,))
         return direct.union(*(part.reliefs for part in parts))
 
-    def with_relief(self, relief: Relief, made: dict[int, Look] | None = None) -> Look:
+    def with_relief(self, relief: Relief, made: dict[int, Appearance] | None = None) -> Appearance:
         """Returns the look with another relief; a blend hands it to its parts.
 
         Args:

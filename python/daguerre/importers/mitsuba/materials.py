@@ -17,7 +17,7 @@ from daguerre.shading.channels import UnsupportedError, fit
 
 from .bsdfs import Surfaces
 from .context import Context
-from .look import Blend, Chart, Look, Relief
+from .look import Appearance, Blend, Chart, Relief
 from .node import Node, leave_out
 from .relief import normal_map
 from .textures import Textures
@@ -40,7 +40,7 @@ class Sides:
 
 
 #: Looks of shapes without a material: lamps reflect nothing.
-_GREY, _BLACK = Look(), Look(Diffuse((0.0, 0.0, 0.0)), two_sided=True)
+_GREY, _BLACK = Appearance(), Appearance(Diffuse((0.0, 0.0, 0.0)), two_sided=True)
 
 
 class Materials:
@@ -54,7 +54,7 @@ class Materials:
     def __init__(self, context: Context, textures: Textures) -> None:
         self._scene, self._textures, self._notes = context.scene, textures, context.notes
         self._surfaces = Surfaces(textures, context.notes)
-        self._looks: dict[int, Look] = {}
+        self._looks: dict[int, Appearance] = {}
         self._known: dict[Any, int] = {}
 
     def index(
@@ -65,7 +65,7 @@ class Materials:
         look = usual if bsdf is None else self.look(bsdf)
         return self._index(look, chart, glow, sides)
 
-    def _index(self, look: Look, chart: Chart, glow: Glow, sides: Sides) -> int:
+    def _index(self, look: Appearance, chart: Chart, glow: Glow, sides: Sides) -> int:
         if all(relief.heights is None for relief in look.reliefs):
             chart = Chart(chart.right_handed and bool(look.reliefs))
         key = (id(look), chart, glow, id(sides.interior), id(sides.exterior))
@@ -74,7 +74,7 @@ class Materials:
             self._known[key] = self._scene.add_material(made)
         return self._known[key]
 
-    def _material(self, look: Look, chart: Chart, glow: Glow, sides: Sides) -> Material:
+    def _material(self, look: Appearance, chart: Chart, glow: Glow, sides: Sides) -> Material:
         made = Material(
             look.kind if look.blend is None else self._mix(look.blend, chart),
             look.name,
@@ -99,41 +99,41 @@ class Materials:
         )
         return Mix(first, second, min(blend.amount, 1.0), blend.amount_texture)
 
-    def _normals(self, look: Look, chart: Chart) -> TextureSlot | None:
+    def _normals(self, look: Appearance, chart: Chart) -> TextureSlot | None:
         if look.relief is None:
             return None
         made = normal_map(look.relief, chart, Arithmetic(self._textures.baker))
         return None if made is None else self._textures.packer.packed(made).slot
 
-    def look(self, node: Node) -> Look:
+    def look(self, node: Node) -> Appearance:
         """Look of a material."""
         if id(node) not in self._looks:
             self._looks[id(node)] = self._read(node)
         return self._looks[id(node)]
 
-    def _read(self, node: Node) -> Look:
+    def _read(self, node: Node) -> Appearance:
         read = _ADAPTERS.get(node.plugin)
         try:
             look = self._surfaces.look(node) if read is None else read(self, node)
         except UnsupportedError as error:
             self._notes.add(f"a material {node.plugin!r}: {error} is not supported: it is grey")
-            look = Look()
+            look = Appearance()
         if look is None:
             leave_out(node, self._notes, f"a material {node.plugin[:40]!r} is grey: not supported")
-            return Look()
+            return Appearance()
         node.use()
         return replace(look, name=node.id)
 
     # Adapters -------------------------------------------------------------------------------------
 
-    def _inner(self, node: Node) -> Look:
+    def _inner(self, node: Node) -> Appearance:
         """The only material inside of another."""
         found = node.nested_one("bsdf")
         if found is None:
             node.fail("needs a material inside")
         return self.look(found)
 
-    def _two_sided(self, node: Node) -> Look:
+    def _two_sided(self, node: Node) -> Appearance:
         found = node.nested("bsdf")
         if not 1 <= len(found) <= 2:
             node.fail(f"wanted one or two materials inside, got {len(found)}")
@@ -142,7 +142,7 @@ class Materials:
             leave_out(found[1], self._notes, sentence)
         return replace(self.look(found[0]), two_sided=True)
 
-    def _mask(self, node: Node) -> Look:
+    def _mask(self, node: Node) -> Appearance:
         look = self._inner(node)
         opacity, slot = self._textures.scalar(node, "opacity", 0.5)
         if look.opacity_texture is not None and slot is not None:
@@ -151,7 +151,7 @@ class Materials:
             look, opacity=opacity * look.opacity, opacity_texture=slot or look.opacity_texture
         )
 
-    def _normal_map(self, node: Node) -> Look:
+    def _normal_map(self, node: Node) -> Appearance:
         look, texture = self._inner(node), self._texture(node)
         value = None if texture is None else fit(texture, 3)
         if node.flag("use_shadowing_function", False):
@@ -160,7 +160,7 @@ class Materials:
             )
         return self._with(look, Relief(normals=value))
 
-    def _bump_map(self, node: Node) -> Look:
+    def _bump_map(self, node: Node) -> Appearance:
         look, texture = self._inner(node), self._texture(node)
         scale = node.number("scale", 1.0)
         height = None if texture is None else self._textures.grey(texture)
@@ -173,24 +173,24 @@ class Materials:
             node.fail("needs a texture inside")
         return self._textures.texture_of(found)
 
-    def _with(self, look: Look, relief: Relief) -> Look:
+    def _with(self, look: Appearance, relief: Relief) -> Appearance:
         if look.reliefs:
             self._notes.add("of a bump or normal map on another only the outer one is used")
         return look.with_relief(relief)
 
-    def _blend(self, node: Node) -> Look:
+    def _blend(self, node: Node) -> Appearance:
         found = node.nested("bsdf")
         if len(found) != 2:
             node.fail(f"wanted two materials inside, got {len(found)}")
         amount, slot = self._textures.scalar(node, "weight", 0.5)
         first, second = (self.look(bsdf) for bsdf in found)
-        return Look(
+        return Appearance(
             two_sided=first.two_sided and second.two_sided,
             blend=Blend(first, second, amount, slot),
         )
 
 
-_ADAPTERS: dict[str, Callable[[Materials, Node], Look]] = {
+_ADAPTERS: dict[str, Callable[[Materials, Node], Appearance]] = {
     "twosided": Materials._two_sided,
     "mask": Materials._mask,
     "normalmap": Materials._normal_map,

@@ -15,7 +15,7 @@ from daguerre.scene.transforms import FLAT, ranks
 from .charts import chart_of
 from .context import Context
 from .curves import CURVES, add_curves
-from .look import Chart, Look
+from .look import Appearance, Chart
 from .materials import Glow, Materials, Sides
 from .media import Media
 from .mesh_files import FILES, MeshFiles
@@ -92,7 +92,7 @@ class Placing:
         """Adds a shape in the space of a pose; ``name``: of its instance, or empty."""
         local = node.transform()
         bsdf = node.nested_one("bsdf")
-        look = Look() if bsdf is None else self._materials.look(bsdf)
+        look = Appearance() if bsdf is None else self._materials.look(bsdf)
         made = self._mesh(node, look.attribute)
         if made is None:
             return

@@ -17,9 +17,9 @@ from daguerre.files.notes import Notes
 from daguerre.shading.arithmetic import Arithmetic
 from daguerre.shading.assemble import Assembler
 from daguerre.shading.channels import Channel, Value, broadcast
-from daguerre.shading.surface import Surface
+from daguerre.shading.surface import GltfInputs
 
-from .look import Look
+from .look import Appearance
 from .node import Node
 from .textures import Textures
 
@@ -37,7 +37,7 @@ _ALIKE = "a principled material is drawn with glTF's layers: sheen, coat and met
 "slightly different"
 
 
-def principled(node: Node, textures: Textures, notes: Notes) -> Look:
+def principled(node: Node, textures: Textures, notes: Notes) -> Appearance:
     """Solid material."""
     surface = _shared(node, textures, notes)
     surface.volume = True
@@ -54,7 +54,7 @@ def principled(node: Node, textures: Textures, notes: Notes) -> Look:
     return _made(surface, textures, notes, two_sided=_is_set(surface.transmission))
 
 
-def principled_thin(node: Node, textures: Textures, notes: Notes) -> Look:
+def principled_thin(node: Node, textures: Textures, notes: Notes) -> Appearance:
     """Thin sheet, seen from both sides."""
     surface = _shared(node, textures, notes)
     surface.ior = node.number("eta", 1.5, above=0)
@@ -66,10 +66,10 @@ def principled_thin(node: Node, textures: Textures, notes: Notes) -> Look:
     return _made(surface, textures, notes, two_sided=True)
 
 
-def _shared(node: Node, textures: Textures, notes: Notes) -> Surface:
+def _shared(node: Node, textures: Textures, notes: Notes) -> GltfInputs:
     each = Arithmetic(textures.baker).each
     channel = textures.channel
-    surface = Surface(base_color=textures.channels(node, "base_color", 0.5))
+    surface = GltfInputs(base_color=textures.channels(node, "base_color", 0.5))
     roughness = channel(node, "roughness", 0.5)
     along, across = _widths(textures, roughness, channel(node, "anisotropic", 0.0))
     surface.roughness = each(lambda v: np.sqrt(np.maximum(v, 0)), across)
@@ -88,14 +88,14 @@ def _shared(node: Node, textures: Textures, notes: Notes) -> Surface:
     return surface
 
 
-def _made(surface: Surface, textures: Textures, notes: Notes, *, two_sided: bool) -> Look:
+def _made(surface: GltfInputs, textures: Textures, notes: Notes, *, two_sided: bool) -> Appearance:
     notes.add(_ALIKE)
     surface.double_sided = surface.double_sided or two_sided
     kind = Assembler(textures.packer, textures.baker).material(surface, "").kind
-    return Look(kind, two_sided=two_sided)
+    return Appearance(kind, two_sided=two_sided)
 
 
-def _specular(node: Node, surface: Surface) -> None:
+def _specular(node: Node, surface: GltfInputs) -> None:
     """Index of refraction, as authored or from the reflectance 0.08 x ``specular``."""
     if node.has("eta") and node.has("specular"):
         node.fail("set either eta or specular, not both")

@@ -86,7 +86,7 @@ def read_all(
     # Huge finite numbers may overflow in between; results are checked.
     with np.errstate(all="ignore"):
         context = Context(document, scene, float(unit_m), notes, _mirrored(document.root))
-        settings = _Reader(context).read()
+        settings = _MitsubaReader(context).read()
     scene.note(*notes.sentences())
     return scene, settings, document.ledger
 
@@ -98,7 +98,7 @@ def _mirrored(root: Node) -> bool:
     return first is not None and mirrors(first.transform())
 
 
-class _Reader:
+class _MitsubaReader:
     def __init__(self, context: Context) -> None:
         self._context, self._scene, self._notes = context, context.scene, context.notes
         self._textures = Textures(context)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .shapes import Surface
+from .shapes import LocalMesh
 
 Array = NDArray[np.floating]
 
@@ -38,7 +38,7 @@ def normal_map(heights: Array, size: tuple[float, float], *, repeats: bool) -> N
     return made
 
 
-def strength(surface: Surface, world: NDArray[np.float64]) -> float:
+def strength(surface: LocalMesh, world: NDArray[np.float64]) -> float:
     """Factor on the slopes of a normal map of :func:`normal_map`, 1 over the length of dp/du, 1/m.
 
     The length is the mean over the surface, and over u and v.

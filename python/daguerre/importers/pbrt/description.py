@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 
 from daguerre.errors import suggest
 
-from .place import Place
+from .place import FilePlace
 from .state import Made
 
 #: Names that may be defined anew; each time costs a copy of all names.
@@ -76,7 +76,7 @@ class Description:
     materials: Names[str] = field(default_factory=lambda: Names("materials"))
 
 
-def named(names: Mapping[str, Made], name: str, place: Place, what: str) -> Made:
+def named(names: Mapping[str, Made], name: str, place: FilePlace, what: str) -> Made:
     """Returns a definition.
 
     Raises:

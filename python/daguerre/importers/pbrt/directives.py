@@ -13,7 +13,7 @@ from daguerre.files.json_item import short
 
 from .lexer import Lexer, text_of
 from .parameters import Parameters, read_parameters
-from .place import Place
+from .place import FilePlace
 
 #: Directives by their arguments: strings, then numbers, then whether parameters follow.
 _ARGUMENTS: dict[str, tuple[int, int, bool]] = {
@@ -67,7 +67,7 @@ class Directive:
     """
 
     name: str
-    place: Place
+    place: FilePlace
     strings: tuple[str, ...] = ()
     numbers: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     parameters: Parameters = field(default_factory=Parameters)
@@ -102,7 +102,7 @@ def _directive(lexer: Lexer, token: bytes) -> Directive:
     )
 
 
-def _more_strings(lexer: Lexer, place: Place, name: str) -> tuple[str, ...]:
+def _more_strings(lexer: Lexer, place: FilePlace, name: str) -> tuple[str, ...]:
     """Reads arguments that only some directives have."""
     if name == "MediumInterface" and lexer.peek() == b'"':
         return (lexer.string(place, "a name"),)
@@ -114,7 +114,7 @@ def _more_strings(lexer: Lexer, place: Place, name: str) -> tuple[str, ...]:
     return ()
 
 
-def _numbers(lexer: Lexer, place: Place, count: int) -> NDArray[np.float64]:
+def _numbers(lexer: Lexer, place: FilePlace, count: int) -> NDArray[np.float64]:
     bracketed = count > 0 and lexer.peek() == b"["
     if bracketed:
         lexer.token()

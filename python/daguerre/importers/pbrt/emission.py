@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from daguerre.shading.images import Images
 
 from .ledger import Ledger
-from .shapes import Surface
+from .shapes import LocalMesh
 from .spectra import Color, Spectra, luminance, scaled
 from .state import Made
 
@@ -61,7 +61,7 @@ class Emissions:
         self._version, self._ledger = version, ledger
 
     def of(
-        self, made: Made | None, surface: Surface, world: Array
+        self, made: Made | None, surface: LocalMesh, world: Array
     ) -> list[tuple[Emission, NDArray[np.bool_] | None]]:
         """Light of a surface, and the triangles that emit it; None: all.
 
@@ -95,7 +95,7 @@ class Emissions:
         return emission, power
 
     def _by_power(
-        self, emission: Emission, power: float, surface: Surface, world: Array
+        self, emission: Emission, power: float, surface: LocalMesh, world: Array
     ) -> list[tuple[Emission, NDArray[np.bool_] | None]]:
         sides = 2 if emission.two_sided else 1
         mean = self._mean_of(emission)
@@ -147,7 +147,7 @@ def _with(emission: Emission, luminance_factor: float) -> Emission:
     return Emission(color, emission.two_sided, emission.picture, emission.directive)
 
 
-def _areas_of_lights(surface: Surface, world: Array) -> tuple[Array, float, int]:
+def _areas_of_lights(surface: LocalMesh, world: Array) -> tuple[Array, float, int]:
     """Area of the light of each triangle, m2; area and number of all lights."""
     corners = surface.positions[surface.triangles].astype(np.float64) @ world[:3, :3].T
     sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

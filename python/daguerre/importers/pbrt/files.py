@@ -18,7 +18,7 @@ from daguerre.files.uris import Folder
 from daguerre.importers.file_bytes import read_bytes
 
 from .lexer import Lexer
-from .place import Place, Source
+from .place import FilePlace, SceneFile
 
 #: Limits of the bytes of all texts, and of nested files; ``Includes`` limits their number.
 MAX_BYTES = 4 << 30
@@ -38,7 +38,7 @@ class Files:
     def __init__(
         self,
         path: Path,
-        included: Callable[[Place], None],
+        included: Callable[[FilePlace], None],
         allow_dirs: Iterable[str | os.PathLike[str]] = (),
     ) -> None:
         self._included = included
@@ -57,7 +57,7 @@ class Files:
         return Lexer(self._source(path), self)
 
     @contextmanager
-    def imported(self, name: str, place: Place) -> Iterator[Lexer]:
+    def imported(self, name: str, place: FilePlace) -> Iterator[Lexer]:
         """Opens a file in a new lexer, for ``Import``.
 
         Raises:
@@ -66,7 +66,7 @@ class Files:
         yield Lexer(self.enter(name, place), self)
         self.leave()
 
-    def enter(self, name: str, place: Place) -> Source:
+    def enter(self, name: str, place: FilePlace) -> SceneFile:
         """Opens a file within the files that are open.
 
         Raises:
@@ -89,7 +89,7 @@ class Files:
         """Closes the innermost open file."""
         self._open.pop()
 
-    def find(self, name: str, place: Place, what: str) -> Path | None:
+    def find(self, name: str, place: FilePlace, what: str) -> Path | None:
         """Returns the file of a name; None: no such file.
 
         Args:
@@ -123,9 +123,9 @@ class Files:
         except (OSError, ValueError):  # no name of a file
             return self._folder.base
 
-    def _source(self, path: Path) -> Source:
+    def _source(self, path: Path) -> SceneFile:
         data = read_bytes(path, max(self._bytes, 0)).tobytes()
         self._bytes -= len(data)
         if data[:2] in _UTF_16:
             raise InputError(f"{path}: wanted text in UTF-8, got UTF-16")
-        return Source(str(path), data.removeprefix(codecs.BOM_UTF8))
+        return SceneFile(str(path), data.removeprefix(codecs.BOM_UTF8))

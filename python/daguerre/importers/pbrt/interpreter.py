@@ -22,7 +22,7 @@ from .files import Files
 from .ledger import Ledger
 from .lexer import Lexer
 from .parameters import Parameter
-from .place import Place
+from .place import FilePlace
 from .state import TARGETS, Made, State
 from .transforms import Matrix, Moving, look_at, rotation, scaling, translation
 
@@ -64,7 +64,7 @@ class Interpreter:
         self.made = Description()
         self._state = State()
         self._systems: dict[str, Moving] = {}
-        self._blocks: list[tuple[str, Place, State]] = []
+        self._blocks: list[tuple[str, FilePlace, State]] = []
         self._in_world = False
         self._object: list[Made] | None = None
         self._handlers: dict[str, Callable[[Directive], None]] = {
@@ -113,7 +113,7 @@ class Interpreter:
         textures, materials = self.made.textures.now, self.made.materials.now
         return Made(kind, parameters, directive.place, state, textures, materials, name)
 
-    def _set(self, place: Place, **changes: object) -> None:
+    def _set(self, place: FilePlace, **changes: object) -> None:
         self._state = replace(self._state, **changes)  # type: ignore[arg-type]
         self._ledger.use(place)
 

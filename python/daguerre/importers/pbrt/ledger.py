@@ -5,9 +5,9 @@ from __future__ import annotations
 from daguerre.files.notes import Notes
 
 from .parameters import Parameters
-from .place import Place, Source
+from .place import FilePlace, SceneFile
 
-_Key = tuple[Source, int]
+_Key = tuple[SceneFile, int]
 
 
 class Ledger:
@@ -19,33 +19,33 @@ class Ledger:
 
     def __init__(self, notes: Notes) -> None:
         self.notes = notes
-        self._waiting: dict[_Key, Place] = {}
+        self._waiting: dict[_Key, FilePlace] = {}
         self._used: set[_Key] = set()
         self._noted: set[_Key] = set()
 
-    def see(self, place: Place) -> None:
+    def see(self, place: FilePlace) -> None:
         """Counts a directive that was read; it waits to be used or noted."""
         self._waiting[_key(place)] = place
 
-    def include(self, place: Place) -> None:
+    def include(self, place: FilePlace) -> None:
         """Counts a directive that includes a file."""
         self.see(place)
         self.use(place)
 
-    def use(self, place: Place) -> None:
+    def use(self, place: FilePlace) -> None:
         """Counts a directive as used; doing it again changes nothing."""
         key = _key(place)
         if self._waiting.pop(key, None) is not None:
             self._used.add(key)
 
-    def note(self, place: Place, sentence: str, name: str = "") -> None:
+    def note(self, place: FilePlace, sentence: str, name: str = "") -> None:
         """Notes that a directive is not used, by the name of its file, if any."""
         key = _key(place)
         if self._waiting.pop(key, None) is not None:
             self._noted.add(key)
         self.notes.add(sentence, name=name)
 
-    def tell_unread(self, parameters: Parameters, place: Place, kind: str) -> None:
+    def tell_unread(self, parameters: Parameters, place: FilePlace, kind: str) -> None:
         """Notes the parameters of a directive that nothing asked for."""
         for parameter in parameters.unread():
             name = parameter.name[:40]
@@ -72,5 +72,5 @@ class Ledger:
         return len(self._waiting)
 
 
-def _key(place: Place) -> _Key:
+def _key(place: FilePlace) -> _Key:
     return place.source, place.offset

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from daguerre.files.json_item import short
 
-from .place import Place, Source
+from .place import FilePlace, SceneFile
 
 FloatArray = NDArray[np.float64]
 Values = FloatArray | list[str] | list[bool]
@@ -36,7 +36,7 @@ _FLAGS = {b"true": True, b"false": False}
 class Includes(Protocol):
     """Opens the files that a text includes."""
 
-    def enter(self, name: str, place: Place) -> Source:
+    def enter(self, name: str, place: FilePlace) -> SceneFile:
         """Opens a file within the files that are open."""
 
     def leave(self) -> None:
@@ -53,18 +53,18 @@ class Lexer:
         includes: Opens further files.
     """
 
-    def __init__(self, source: Source, includes: Includes) -> None:
+    def __init__(self, source: SceneFile, includes: Includes) -> None:
         self.source = source
         self._includes = includes
-        self._outer: list[tuple[Source, int]] = []
+        self._outer: list[tuple[SceneFile, int]] = []
         self._data = source.data
         self._next = 0
         #: where the last token begins
         self.offset = 0
 
-    def place(self, directive: str = "") -> Place:
+    def place(self, directive: str = "") -> FilePlace:
         """Place of the last token."""
-        return Place(self.source, self.offset, directive)
+        return FilePlace(self.source, self.offset, directive)
 
     def token(self) -> bytes | None:
         """Returns the next token, with the quotes of a string; None: the file ends.
@@ -86,7 +86,7 @@ class Lexer:
         start = self._begin()
         return self._data[start : start + 1]
 
-    def string(self, place: Place, what: str) -> str:
+    def string(self, place: FilePlace, what: str) -> str:
         """Reads a string.
 
         Raises:
@@ -97,7 +97,7 @@ class Lexer:
             self._lacks(place, f"{what} in quotes", token)
         return text_of(token)
 
-    def number(self, place: Place) -> float:
+    def number(self, place: FilePlace) -> float:
         """Reads a number.
 
         Raises:
@@ -109,7 +109,7 @@ class Lexer:
             self._lacks(place, "a number", token)
         return value
 
-    def values(self, place: Place) -> Values:
+    def values(self, place: FilePlace) -> Values:
         """Reads the value of a parameter: a token, or a list in brackets.
 
         Raises:
@@ -127,7 +127,7 @@ class Lexer:
         begin, self._next = self._next, end + 1
         return self._numbers(inside, begin, place)
 
-    def _until_bracket(self, place: Place) -> list[tuple[int, bytes]]:
+    def _until_bracket(self, place: FilePlace) -> list[tuple[int, bytes]]:
         opened = self.offset
         tokens: list[tuple[int, bytes]] = []
         while True:
@@ -138,7 +138,7 @@ class Lexer:
                 return tokens
             tokens.append((self.offset, token))
 
-    def _of_tokens(self, tokens: list[tuple[int, bytes]], place: Place) -> Values:
+    def _of_tokens(self, tokens: list[tuple[int, bytes]], place: FilePlace) -> Values:
         """Makes values of one kind: strings, flags or numbers."""
         if tokens and tokens[0][1][:1] == b'"':
             for offset, token in tokens:
@@ -158,7 +158,7 @@ class Lexer:
             numbers.append(value)
         return np.array(numbers, np.float64)
 
-    def _numbers(self, text: bytes, begin: int, place: Place) -> FloatArray:
+    def _numbers(self, text: bytes, begin: int, place: FilePlace) -> FloatArray:
         words = text.split()
         found = None
         if not text.translate(None, _OF_NUMBERS):
@@ -201,7 +201,7 @@ class Lexer:
         self._next = self.offset = gap.end()
         return self.offset
 
-    def _lacks(self, place: Place, wanted: str, token: bytes | None) -> NoReturn:
+    def _lacks(self, place: FilePlace, wanted: str, token: bytes | None) -> NoReturn:
         got = "the end of the file" if token is None else _shown(token)
         place.at(self.offset).fail(f"wanted {wanted}, got {got}")
 

@@ -11,7 +11,7 @@ from daguerre.scene.scene import Scene
 from .description import named
 from .emission import DARK, Emission
 from .ledger import Ledger
-from .materials import OF_V4, Look, Reader, Tools
+from .materials import OF_V4, Appearance, Reader, Tools
 from .media import Media
 from .old_materials import OF_V3
 from .state import Made
@@ -20,7 +20,7 @@ from .textures import Shade, Textures
 #: Largest depth of mixtures within mixtures.
 _DEEPEST = 16
 #: Default material of surfaces, as in pbrt.
-_USUAL = Look(Diffuse((0.5, 0.5, 0.5)))
+_USUAL = Appearance(Diffuse((0.5, 0.5, 0.5)))
 
 
 class Looks:
@@ -36,7 +36,7 @@ class Looks:
     def __init__(self, scene: Scene, tools: Tools, media: Media, ledger: Ledger) -> None:
         self._scene, self._media, self._ledger = scene, media, ledger
         self._tools = replace(tools, part=self._part)
-        self._looks: dict[Made, Look] = {}
+        self._looks: dict[Made, Appearance] = {}
         self._open: list[Made] = []
         self._indices: dict[tuple[object, ...], int] = {}
         readers: dict[str, Reader] = (
@@ -49,7 +49,7 @@ class Looks:
         """Textures of the scene."""
         return self._tools.textures
 
-    def of(self, shape: Made) -> Look:
+    def of(self, shape: Made) -> Appearance:
         """Look of a shape's material.
 
         Raises:
@@ -68,7 +68,7 @@ class Looks:
         return self.textures.number(shape, "alpha", 1.0)
 
     def index(
-        self, shape: Made, look: Look, mask: Shade, emission: Emission, slope: float = 1.0
+        self, shape: Made, look: Appearance, mask: Shade, emission: Emission, slope: float = 1.0
     ) -> int:
         """Index of the material of a shape.
 
@@ -102,7 +102,12 @@ class Looks:
         return self._indices[key]
 
     def _material(
-        self, kind: Kind, look: Look, mask: Shade, inside: Medium | None, outside: Medium | None
+        self,
+        kind: Kind,
+        look: Appearance,
+        mask: Shade,
+        inside: Medium | None,
+        outside: Medium | None,
     ) -> Material:
         opacity = min(max(mask.number, 0.0), 1.0) * look.opacity
         if mask.slot is not None and look.opacity_slot is not None:
@@ -123,7 +128,7 @@ class Looks:
         index = self.textures.picture(place, emission.picture)
         return None if index is None else TextureSlot(index)
 
-    def _look(self, made: Made) -> Look:
+    def _look(self, made: Made) -> Appearance:
         if made not in self._looks:
             if made in self._open:
                 made.place.fail("mixes form a cycle: the material contains itself")
@@ -134,7 +139,7 @@ class Looks:
             self._open.pop()
         return self._looks[made]
 
-    def _read(self, made: Made) -> Look:
+    def _read(self, made: Made) -> Appearance:
         is_named = made.place.directive == "MakeNamedMaterial"
         kind = made.parameters.text("type") if is_named else made.kind
         if is_named and not kind:
@@ -146,7 +151,7 @@ class Looks:
         textures = self.textures
         textures.space = None
         found = reader(replace(made, kind=kind), self._tools)
-        look = found if isinstance(found, Look) else Look(found)
+        look = found if isinstance(found, Appearance) else Appearance(found)
         look = replace(
             look, normals=self._normals(made), bump=self._bump(made), space=textures.space
         )

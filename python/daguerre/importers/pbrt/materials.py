@@ -35,7 +35,7 @@ _WHITE: Color = (1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True)
-class Look:
+class Appearance:
     """Look of a surface.
 
     Attributes:
@@ -84,7 +84,7 @@ class Tools:
         return roughness_of(made, self.textures, self.version, self.ledger, default, prefix)
 
 
-Reader = Callable[[Made, Tools], Kind | Look]
+Reader = Callable[[Made, Tools], Kind | Appearance]
 
 
 def diffuse(made: Made, tools: Tools) -> Kind:
@@ -208,7 +208,7 @@ def interface(made: Made, tools: Tools) -> Kind:
     return Boundary()
 
 
-def mix(made: Made, tools: Tools) -> Kind | Look:
+def mix(made: Made, tools: Tools) -> Kind | Appearance:
     """Reads ``mix`` of two named materials."""
     names = made.parameters.texts("materials")
     if len(names) != 2:
@@ -216,7 +216,7 @@ def mix(made: Made, tools: Tools) -> Kind | Look:
     return mixed(made, tools, names[0], names[1])
 
 
-def mixed(made: Made, tools: Tools, first: str, second: str) -> Kind | Look:
+def mixed(made: Made, tools: Tools, first: str, second: str) -> Kind | Appearance:
     """Mixture of two named materials; ``amount`` is the share of the second.
 
     An invisible part makes the other part partly transparent.
@@ -224,10 +224,10 @@ def mixed(made: Made, tools: Tools, first: str, second: str) -> Kind | Look:
     (a, kind), (b, other) = (tools.part(made, name) for name in (first, second))
     if isinstance(other, Boundary):
         shade = tools.textures.number(made, "amount", 0.5, lambda values: 1 - values, "1 - amount")
-        return Look(kind, opacity=_share(shade.number), opacity_slot=shade.slot)
+        return Appearance(kind, opacity=_share(shade.number), opacity_slot=shade.slot)
     shade = tools.textures.number(made, "amount", 0.5)
     if isinstance(kind, Boundary):
-        return Look(other, opacity=_share(shade.number), opacity_slot=shade.slot)
+        return Appearance(other, opacity=_share(shade.number), opacity_slot=shade.slot)
     return Mix(a, b, _share(shade.number), shade.slot)
 
 

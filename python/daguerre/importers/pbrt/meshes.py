@@ -17,9 +17,9 @@ from .emission import DARK, Emission, Emissions
 from .files import Files
 from .ledger import Ledger
 from .looks import Looks, has_slots
-from .materials import Look
+from .materials import Appearance
 from .placing import Placing, Spots
-from .shapes import Surface, surface_of
+from .shapes import LocalMesh, surface_of
 from .state import Made
 from .textures import Shade
 from .transforms import Moving, scaling
@@ -103,7 +103,7 @@ class Meshes:
         self._ledger.tell_unread(made.parameters, made.place, made.kind)
 
     def _lit(
-        self, made: Made, surface: Surface, outer: list[Moving] | None
+        self, made: Made, surface: LocalMesh, outer: list[Moving] | None
     ) -> list[tuple[Emission, NDArray[np.bool_] | None]]:
         light = made.state.emission
         if light is not None and outer is not None:
@@ -113,7 +113,7 @@ class Meshes:
         return self._emissions.of(light, surface, made.state.transform.start)
 
     def _mesh(
-        self, surface: Surface, made: Made, look: Look, mask: Shade, emission: Emission
+        self, surface: LocalMesh, made: Made, look: Appearance, mask: Shade, emission: Emission
     ) -> int:
         textured = has_slots(look) or has_slots(mask) or bool(emission.picture)
         if textured:
@@ -133,7 +133,7 @@ class Meshes:
             self._meshes[surface.key] = self._add(surface, None)
         return self._meshes[surface.key]
 
-    def _spend(self, surface: Surface, made: Made) -> None:
+    def _spend(self, surface: LocalMesh, made: Made) -> None:
         """Counts triangles that no file holds, and stops at too many."""
         if made.kind in ("trianglemesh", "plymesh"):
             return
@@ -141,7 +141,7 @@ class Meshes:
         if self._left < 0:
             made.place.fail(f"too many triangles of shapes: the limit is {MAX_TRIANGLES}")
 
-    def _add(self, surface: Surface, uv1: NDArray[np.float32] | None) -> int:
+    def _add(self, surface: LocalMesh, uv1: NDArray[np.float32] | None) -> int:
         positions = freeze_in_place(np.ascontiguousarray(surface.positions, np.float32))
         triangles = freeze_in_place(np.ascontiguousarray(surface.triangles, np.uint32))
         if surface.level:

@@ -11,7 +11,7 @@ import math
 
 from daguerre.scene.materials import Coated, Conductor, Dielectric, Diffuse, Gltf, Kind
 
-from .materials import OF_V4, Look, Reader, Tools, measured, metal, mixed, subsurface
+from .materials import OF_V4, Appearance, Reader, Tools, measured, metal, mixed, subsurface
 from .spectra import Color, luminance
 from .state import Made
 from .textures import Shade
@@ -33,7 +33,7 @@ def plastic(made: Made, tools: Tools) -> Kind:
     return _coated(made, tools, _QUARTER, _QUARTER, 1.5)
 
 
-def uber(made: Made, tools: Tools) -> Kind | Look:
+def uber(made: Made, tools: Tools) -> Kind | Appearance:
     """Reads ``uber`` as a coated diffuse surface, partly transparent."""
     _tell(tools, "uber", "a coated diffuse surface")
     for name in ("Kr", "Kt"):
@@ -45,7 +45,7 @@ def uber(made: Made, tools: Tools) -> Kind | Look:
     shade = tools.textures.color(made, "opacity", _WHITE)
     if shade.slot is None and min(shade.color) == 1:
         return kind
-    return Look(kind, opacity=min(luminance(shade.color), 1.0), opacity_slot=shade.slot)
+    return Appearance(kind, opacity=min(luminance(shade.color), 1.0), opacity_slot=shade.slot)
 
 
 def substrate(made: Made, tools: Tools) -> Kind:
@@ -121,7 +121,7 @@ def disney(made: Made, tools: Tools) -> Kind:
     )
 
 
-def mix(made: Made, tools: Tools) -> Kind | Look:
+def mix(made: Made, tools: Tools) -> Kind | Appearance:
     """Reads ``mix``; in pbrt-v3 ``amount`` is the share of the first material."""
     if tools.textures.has(made, "materials"):
         return OF_V4["mix"](made, tools)

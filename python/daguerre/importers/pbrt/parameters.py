@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from daguerre.files.json_item import MAX_NUMBER, short
 
 from .lexer import Lexer, Values
-from .place import Place
+from .place import FilePlace
 
 FloatArray = NDArray[np.float64]
 #: Names of types in pbrt-v3 and before: their names in pbrt-v4.
@@ -43,7 +43,7 @@ class Parameter:
     type: str
     name: str
     values: Values
-    place: Place
+    place: FilePlace
     color_space: str = "srgb"
 
     @property
@@ -205,7 +205,7 @@ class Parameters:
         return np.asarray(found[0])
 
 
-def read_parameters(lexer: Lexer, place: Place) -> Parameters:
+def read_parameters(lexer: Lexer, place: FilePlace) -> Parameters:
     """Reads the parameters of a directive.
 
     Raises:

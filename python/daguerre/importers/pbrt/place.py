@@ -14,7 +14,7 @@ from daguerre.files.json_item import Item, clean
 
 
 @dataclass(frozen=True, eq=False)
-class Source:
+class SceneFile:
     """A file of a scene.
 
     Attributes:
@@ -34,7 +34,7 @@ class Source:
         return f"<Source {self.name}: {len(self.data)} bytes>"
 
 
-class Place:
+class FilePlace:
     """A place in a file. Line and column are counted only when a message needs them.
 
     Args:
@@ -45,12 +45,12 @@ class Place:
 
     __slots__ = ("directive", "offset", "source")
 
-    def __init__(self, source: Source, offset: int, directive: str = "") -> None:
+    def __init__(self, source: SceneFile, offset: int, directive: str = "") -> None:
         self.source, self.offset, self.directive = source, offset, directive
 
-    def at(self, offset: int) -> Place:
+    def at(self, offset: int) -> FilePlace:
         """Returns another place of the same file and directive."""
-        return Place(self.source, offset, self.directive)
+        return FilePlace(self.source, offset, self.directive)
 
     def __str__(self) -> str:
         ends = self.source.line_ends

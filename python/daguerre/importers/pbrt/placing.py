@@ -14,7 +14,7 @@ from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import FLAT, ranks
 
 from .ledger import Ledger
-from .place import Place
+from .place import FilePlace
 from .transforms import Matrix, Moving
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ class Spots:
 
     name: str
     outer: Sequence[Moving]
-    place: Place
+    place: FilePlace
 
 
 class Placing:

@@ -33,7 +33,7 @@ _DEFAULT_UV = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)])
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class LocalMesh:
     """A mesh in object space.
 
     Attributes:
@@ -60,7 +60,7 @@ class Surface:
     key: tuple[object, ...] | None = None
     name: str = ""
 
-    def faced(self) -> Surface:
+    def faced(self) -> LocalMesh:
         """The same surface, with triangles that face the side of its normals."""
         if self.normals is None:
             return self
@@ -74,13 +74,13 @@ class Surface:
         triangles[behind] = triangles[behind][:, ::-1]
         return replace(self, triangles=triangles)
 
-    def reversed(self) -> Surface:
+    def reversed(self) -> LocalMesh:
         """The same surface, with its sides exchanged."""
         normals = None if self.normals is None else -self.normals
         key = None if self.key is None else (*self.key, "reversed")
         return replace(self, normals=normals, triangles=self.triangles[:, ::-1], key=key)
 
-    def with_uv(self) -> Surface:
+    def with_uv(self) -> LocalMesh:
         """The same surface; without texture coordinates, each triangle gets pbrt's."""
         if self.uv is not None or self.level:
             return self
@@ -95,7 +95,7 @@ class Surface:
         )
 
 
-def surface_of(made: Made, files: Files, notes: Notes) -> Surface | str:
+def surface_of(made: Made, files: Files, notes: Notes) -> LocalMesh | str:
     """Reads a shape, or notes why it is left out: unsupported kind, or no area.
 
     Raises:
@@ -112,7 +112,7 @@ def surface_of(made: Made, files: Files, notes: Notes) -> Surface | str:
     return found.reversed() if made.state.reversed else found
 
 
-def _triangles(made: Made, files: Files, notes: Notes) -> Surface | str | None:
+def _triangles(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
     del files
     positions = _positions(made)
     indices = made.parameters.integers("indices", 0, _MOST_INDEX)
@@ -123,12 +123,12 @@ def _triangles(made: Made, files: Files, notes: Notes) -> Surface | str | None:
     rows = _indices(made, indices, 3, len(positions))
     if made.parameters.find("S") is not None or made.parameters.find("faceIndices") is not None:
         notes.add("'S' or 'faceIndices' of a trianglemesh is not used")
-    return Surface(
+    return LocalMesh(
         positions, rows, _values(made, "N", positions, notes), _uv(made, positions, notes)
     ).faced()
 
 
-def _loop(made: Made, files: Files, notes: Notes) -> Surface | str | None:
+def _loop(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
     del files
     positions = _positions(made)
     indices = made.parameters.integers("indices", 0, _MOST_INDEX)
@@ -141,10 +141,10 @@ def _loop(made: Made, files: Files, notes: Notes) -> Surface | str | None:
     while level > 1 and len(rows) << 2 * level > _MOST_FACES:
         level -= 1
         notes.add("a loopsubdiv surface with very many faces gets fewer levels")
-    return Surface(positions, rows, level=level)
+    return LocalMesh(positions, rows, level=level)
 
 
-def _patches(made: Made, files: Files, notes: Notes) -> Surface | str | None:
+def _patches(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
     del files
     positions = _positions(made)
     indices = made.parameters.integers("indices", 0, _MOST_INDEX)
@@ -168,7 +168,7 @@ def _patches(made: Made, files: Files, notes: Notes) -> Surface | str | None:
     return replace(surface, patch=surface.triangles[:, 0] // each)
 
 
-def _plymesh(made: Made, files: Files, notes: Notes) -> Surface | str | None:
+def _plymesh(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
     name = made.parameters.text("filename") or made.place.fail("filename: missing")
     path = files.find(name, made.place, "filename")
     for unused in ("displacement", "displacement.uvscale", "edgelength"):
@@ -188,11 +188,11 @@ def _plymesh(made: Made, files: Files, notes: Notes) -> Surface | str | None:
     normals = mesh.normals if mesh.normals is not None and len(mesh.normals) == count else None
     uv = mesh.uv if mesh.uv is not None and len(mesh.uv) == count else None
     name = path.stem.split(".")[0]
-    made_of = Surface(mesh.positions, triangles, normals, uv, patch=patch, name=name)
+    made_of = LocalMesh(mesh.positions, triangles, normals, uv, patch=patch, name=name)
     return made_of.faced() if len(triangles) else None
 
 
-def _sphere(made: Made, files: Files, notes: Notes) -> Surface | str | None:
+def _sphere(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
     del files, notes
     number = made.parameters.number
     radius = number("radius", 1.0, 0.0)
@@ -216,7 +216,7 @@ def _part_of_sphere(low: float, high: float, sweep: float, error: float) -> soli
     return solids.sphere(1.0, low, high, sweep, error)
 
 
-def _disk(made: Made, files: Files, notes: Notes) -> Surface | str | None:
+def _disk(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
     del files, notes
     number = made.parameters.number
     radius, height = number("radius", 1.0, 0.0), number("height", 0.0)
@@ -228,7 +228,7 @@ def _disk(made: Made, files: Files, notes: Notes) -> Surface | str | None:
         return _of_solid(solids.disk(radius, inner, height, sweep), area, key)
 
 
-def _cylinder(made: Made, files: Files, notes: Notes) -> Surface | str | None:
+def _cylinder(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
     del files, notes
     number = made.parameters.number
     radius, low, high = number("radius", 1.0, 0.0), number("zmin", -1.0), number("zmax", 1.0)
@@ -245,11 +245,11 @@ def _sweep(made: Made) -> float:
 
 def _of_solid(
     solid: solids.ShapeMesh | None, area: float | None, key: tuple[object, ...] | None
-) -> Surface | None:
+) -> LocalMesh | None:
     if solid is None:
         return None
     uv = _down(solid.uv)
-    return Surface(solid.positions, solid.triangles, solid.normals, uv, area, key=key)
+    return LocalMesh(solid.positions, solid.triangles, solid.normals, uv, area, key=key)
 
 
 def _down(uv: Array) -> Array:
@@ -301,7 +301,7 @@ def _uv(made: Made, positions: Array, notes: Notes) -> Array | None:
     return None
 
 
-_KINDS: dict[str, Callable[[Made, Files, Notes], Surface | str | None]] = {
+_KINDS: dict[str, Callable[[Made, Files, Notes], LocalMesh | str | None]] = {
     "trianglemesh": _triangles,
     "loopsubdiv": _loop,
     "bilinearmesh": _patches,

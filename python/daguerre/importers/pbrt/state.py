@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from .parameters import Parameter, Parameters
-from .place import Place
+from .place import FilePlace
 from .transforms import Moving
 
 #: Targets of ``Attribute``.
@@ -59,7 +59,7 @@ class Made:
 
     kind: str
     parameters: Parameters
-    place: Place
+    place: FilePlace
     state: State
     textures: Mapping[tuple[str, str], Made] = field(default_factory=dict)
     materials: Mapping[str, Made] = field(default_factory=dict)

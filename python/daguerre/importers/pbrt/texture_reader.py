@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from daguerre.shading.images import Images
-from daguerre.shading.picture import Picture
+from daguerre.shading.picture import DecodedPicture
 
 from .description import named
 from .ledger import Ledger
@@ -169,7 +169,7 @@ class TextureReader:
         image = self._pictured(made, kind, name, picture)
         return _grey(0.5) if picture is None else image
 
-    def _pictured(self, made: Made, kind: str, name: str, picture: Picture | None) -> Image:
+    def _pictured(self, made: Made, kind: str, name: str, picture: DecodedPicture | None) -> Image:
         parameters = made.parameters
         wrap = parameters.text("wrap", "repeat")
         if wrap not in _WRAPS:
@@ -214,8 +214,8 @@ class TextureReader:
         return exponent
 
 
-_Reader = Callable[[TextureReader, Made, str, int], Node]
-_CLASSES: dict[str, _Reader] = {
+_TextureFunction = Callable[[TextureReader, Made, str, int], Node]
+_CLASSES: dict[str, _TextureFunction] = {
     "constant": TextureReader._value,
     "scale": TextureReader._scale,
     "mix": TextureReader._mix,

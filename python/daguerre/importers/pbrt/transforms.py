@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from daguerre.motion.values import Keys, keys
 
-from .place import Place
+from .place import FilePlace
 
 Matrix = NDArray[np.float64]
 IDENTITY = np.eye(4)
@@ -38,7 +38,7 @@ def unit_of(axes: Matrix) -> float:
     return float(abs(np.linalg.det(axes[:3, :3])) ** (1 / 3))
 
 
-def rotation(degrees: float, axis: NDArray[np.float64], place: Place) -> Matrix:
+def rotation(degrees: float, axis: NDArray[np.float64], place: FilePlace) -> Matrix:
     """Rotation about an axis (3,), counter-clockwise as its tip sees it (Rodrigues' formula)."""
     length = float(np.linalg.norm(axis))
     if not length > 0:
@@ -51,7 +51,7 @@ def rotation(degrees: float, axis: NDArray[np.float64], place: Place) -> Matrix:
     return made
 
 
-def look_at(numbers: NDArray[np.float64], place: Place) -> Matrix:
+def look_at(numbers: NDArray[np.float64], place: FilePlace) -> Matrix:
     """Camera from world of an eye, a target and an up vector (9,); the camera looks along +z."""
     eye, target, up = numbers.reshape(3, 3)
     ahead = target - eye
@@ -65,7 +65,7 @@ def look_at(numbers: NDArray[np.float64], place: Place) -> Matrix:
     return inverse(world, place)
 
 
-def inverse(matrix: Matrix, place: Place) -> Matrix:
+def inverse(matrix: Matrix, place: FilePlace) -> Matrix:
     """Inverse of a transform.
 
     Raises:
@@ -124,7 +124,7 @@ class Moving:
         times = outer.times if outer.moves else self.times
         return Moving(outer.start @ self.start, outer.end @ self.end, times)
 
-    def inverse(self, place: Place) -> Moving:
+    def inverse(self, place: FilePlace) -> Moving:
         """Returns the inverse."""
         start = inverse(self.start, place)
         end = start if self.end is self.start else inverse(self.end, place)

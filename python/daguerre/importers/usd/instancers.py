@@ -60,7 +60,7 @@ def read_copies(prim: Usd.Prim, clock: Clock, notes: Notes) -> list[Copies]:
             f"{where}.protoIndices: wanted 0 .. {len(targets) - 1}, one of the prototypes, "
             f"got {kinds.min() if kinds.min() < 0 else kinds.max()}"
         )
-    crowd = _Reader(prim, len(kinds), clock, notes).crowd()
+    crowd = _InstancerReader(prim, len(kinds), clock, notes).crowd()
     now = crowd.at(clock.time)
     shown = np.asarray(instancer.ComputeMaskAtTime(clock.code) or [True] * len(kinds), bool)
     if clock.codes(instancer.GetInvisibleIdsAttr()):
@@ -90,7 +90,7 @@ def _lacking(instancer: UsdGeom.PointInstancer, clock: Clock) -> str:
     return "" if len(instancer.GetPositionsAttr().Get(clock.code) or ()) else "positions"
 
 
-class _Reader:
+class _InstancerReader:
     """Reads the arrays of an instancer with ``count`` copies."""
 
     def __init__(self, prim: Usd.Prim, count: int, clock: Clock, notes: Notes) -> None:

@@ -17,7 +17,7 @@ from daguerre.files.notes import Notes
 from daguerre.motion.values import Composite, Dynamic, is_dynamic
 from daguerre.scene.motion import Vertices
 from daguerre.scene.over_time.points import ChosenOverTime
-from daguerre.scene.over_time.surfaces import Array, LimitOverTime, Primvar, Surface
+from daguerre.scene.over_time.surfaces import Array, DrawnPolygons, LimitOverTime, Primvar
 from daguerre.scene.point_cache import PointCache
 from daguerre.scene.polygons import triangulate, weld
 from daguerre.scene.scene import Scene
@@ -69,7 +69,7 @@ class Shape:
 
     prim: Usd.Prim
     points: Array | Dynamic
-    surface: Surface
+    surface: DrawnPolygons
     flipped: bool
     begun: Future[tuple[Array, Array | None]]
     rest: Array | None
@@ -157,7 +157,7 @@ class Meshes:
         rest = None if before is points else np.asarray(_now(before, self._clock), np.float32)
         return Shape(prim, points, surface, flipped, self._begun(surface, here), rest)
 
-    def _begun(self, surface: Surface, points: Array) -> Future[tuple[Array, Array | None]]:
+    def _begun(self, surface: DrawnPolygons, points: Array) -> Future[tuple[Array, Array | None]]:
         """Points of a surface; points of a smooth surface are computed in a thread."""
         if surface.smooth:
             return self._pool.submit(_quiet, surface, points)
@@ -272,7 +272,7 @@ class Meshes:
         return np.asarray(np.clip(np.concatenate([color, alpha], axis=1), 0, None), np.float32)
 
 
-def _quiet(surface: Surface, points: Array) -> tuple[Array, Array | None]:
+def _quiet(surface: DrawnPolygons, points: Array) -> tuple[Array, Array | None]:
     """Points of a surface; huge numbers may overflow in between, as in all of the reader."""
     with np.errstate(all="ignore"):
         return surface.points(points)

@@ -72,7 +72,7 @@ class Visit:
         ) or str(prim.GetPath())
 
 
-class Walk:
+class PrimWalk:
     """Visits prims of a stage.
 
     Args:

@@ -38,7 +38,7 @@ from .meshes import Meshes
 from .nesting import Totals
 from .placing import Placing, Spots, single, times
 from .points import read_points
-from .prims import PURPOSES, Visit, Walk
+from .prims import PURPOSES, PrimWalk, Visit
 from .shapes import SIZES, is_solid, solid_of
 from .skeletons import Skeletons
 from .spheres import read_spheres
@@ -100,7 +100,7 @@ def read(
         opened = replace(opened, clock=clock)
         made = Scene() if into is None else into
         made.path, made.time = file, float(time)
-        scene = _Reader(opened, made, notes).read(purpose, camera_units)
+        scene = _UsdReader(opened, made, notes).read(purpose, camera_units)
     if into is not None:
         into.owner = opened.stage
     if drawn is not None and drawn.left_out:
@@ -122,7 +122,7 @@ def _moments(given: tuple[float, float], time: float) -> Moments:
 Worlds = dict[str, Matrix | Transform]
 
 
-class _Reader:
+class _UsdReader:
     def __init__(self, opened: Opened, scene: Scene, notes: Notes) -> None:
         self._opened, self.scene, self._notes = opened, scene, notes
         self._clock = opened.clock
@@ -139,7 +139,7 @@ class _Reader:
 
     def read(self, purposes: Sequence[str], camera_millimetres: float | None) -> Scene:
         opened = self._opened
-        self._walk = Walk(self._clock, opened.root, purposes, self._notes)
+        self._walk = PrimWalk(self._clock, opened.root, purposes, self._notes)
         visits = list(self._walk.below(opened.stage.GetPseudoRoot(), opened.root))
         self._add_skeletons(visits)
         worlds = _skeleton_worlds(visits)

@@ -8,7 +8,7 @@ from pxr import UsdGeom
 
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
-from daguerre.scene.over_time.surfaces import Faces, Subdivided, Surface
+from daguerre.scene.over_time.surfaces import DrawnPolygons, Faces, Subdivided
 from daguerre.scene.subdivision import Refiner, Rules, edges_of_chains
 
 from .values import Clock
@@ -68,18 +68,20 @@ def scheme_of(mesh: UsdGeom.Mesh, clock: Clock) -> str:
     return str(mesh.GetSubdivisionSchemeAttr().Get(clock.code) or "none")
 
 
-def surface_of(faces: Faces, mesh: UsdGeom.Mesh, level: int, clock: Clock, notes: Notes) -> Surface:
+def surface_of(
+    faces: Faces, mesh: UsdGeom.Mesh, level: int, clock: Clock, notes: Notes
+) -> DrawnPolygons:
     """Makes the surface of a mesh in its scheme of subdivision."""
     scheme = scheme_of(mesh, clock)
     if scheme not in _SCHEMES or not len(faces.sizes):
         if scheme not in (*_SCHEMES, "none"):
             notes.add(f"subdivision scheme {scheme[:40]!r} is unknown: the mesh is not subdivided")
-        return Surface(faces)
+        return DrawnPolygons(faces)
     if scheme == "loop" and (faces.sizes != 3).any():
         notes.add(
             "a mesh for Loop's subdivision has faces other than triangles: it is not subdivided"
         )
-        return Surface(faces)
+        return DrawnPolygons(faces)
     where = f"{clock.file}: {mesh.GetPath()}"
     rules = _rules(mesh, faces, clock)
     refiner = Refiner(

@@ -17,7 +17,7 @@ from .draft import Draft
 from .pupil import Pupil
 from .seq_commands import commands
 from .seq_mode import fitting
-from .seq_surface import Surface
+from .seq_surface import SeqSurface
 from .text import Line, Unread, number, words
 
 MAX_POSITIONS = 64
@@ -46,22 +46,22 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
     return fitting(reader.lens, _run(text, where, False).lens, where)
 
 
-def _run(text: str, where: str, radius_mode: bool) -> _Reader:
+def _run(text: str, where: str, radius_mode: bool) -> _SeqReader:
     """Takes all commands; ``radius_mode`` holds until the file says RDM."""
-    reader = _Reader(where, radius_mode)
+    reader = _SeqReader(where, radius_mode)
     for command in commands(text, where):
         if not reader.take(command):
             break
     return reader
 
 
-class _Reader:
+class _SeqReader:
     """Builds a lens from the commands, in their order."""
 
     def __init__(self, file: str, radius_mode: bool) -> None:
         self.file = file
         self.unread = Unread()
-        self.surfaces: list[Surface] = []
+        self.surfaces: list[SeqSurface] = []
         self.radius_mode = radius_mode
         self.says_mode = False
         self.unit = 1.0
@@ -103,7 +103,7 @@ class _Reader:
             line.fail(f"wanted the object SO first, got {line.name}")
         if self.surfaces and self.surfaces[-1].is_image:
             line.fail(f"no surface may follow the image SI, got {line.name}")
-        self.surfaces.append(Surface(line, number, self.radius_mode, self.private, self.unread))
+        self.surfaces.append(SeqSurface(line, number, self.radius_mode, self.private, self.unread))
 
     def _system(self, line: Line) -> bool:
         keyword = line.words[0]
@@ -179,7 +179,7 @@ class _Reader:
             surface = self.surfaces[-1]
         surface.take(Line(line.file, line.number, tuple(words)))
 
-    def _at(self, word: str, line: Line) -> Surface:
+    def _at(self, word: str, line: Line) -> SeqSurface:
         index = {"O": 0, "I": len(self.surfaces) - 1}.get(word.upper())
         index = int(word) if index is None else index
         if not 0 <= index < len(self.surfaces):

@@ -41,7 +41,7 @@ _REFUSED = {
 }
 
 
-class Surface:
+class SeqSurface:
     """A surface: ``S radius thickness glass``, and the commands that follow."""
 
     def __init__(

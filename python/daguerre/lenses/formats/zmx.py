@@ -44,7 +44,7 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
     Raises:
         LensError: The file cannot be read; the message has the line, and the surface if any.
     """
-    reader = _Reader(where)
+    reader = _ZmxReader(where)
     for i, content in enumerate(lines_of(text, where), 1):
         words = tuple(_WORDS.findall(content))
         if words:
@@ -52,7 +52,7 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
     return reader.lens()
 
 
-class _Reader:
+class _ZmxReader:
     """Builds a lens from the records, in their order."""
 
     def __init__(self, file: str) -> None:
@@ -194,13 +194,13 @@ class _Reader:
         return out
 
 
-_HEADER: dict[str, Callable[[_Reader, Line, str], None]] = {
-    "MODE": _Reader._mode,
-    "NAME": _Reader._name,
-    "NOTE": _Reader._note,
-    "UNIT": _Reader._unit,
-    "GCAT": _Reader._catalogues,
-    "ENVD": _Reader._environment,
-    **dict.fromkeys(("ENPD", "FNUM", "OBNA", "FLOA"), _Reader._aperture),
-    **dict.fromkeys(("FTYP", "XFLN", "YFLN"), _Reader._field),
+_HEADER: dict[str, Callable[[_ZmxReader, Line, str], None]] = {
+    "MODE": _ZmxReader._mode,
+    "NAME": _ZmxReader._name,
+    "NOTE": _ZmxReader._note,
+    "UNIT": _ZmxReader._unit,
+    "GCAT": _ZmxReader._catalogues,
+    "ENVD": _ZmxReader._environment,
+    **dict.fromkeys(("ENPD", "FNUM", "OBNA", "FLOA"), _ZmxReader._aperture),
+    **dict.fromkeys(("FTYP", "XFLN", "YFLN"), _ZmxReader._field),
 }

@@ -18,14 +18,14 @@ from daguerre.pictures import decoder
 from . import tiff
 from .kinds import Kind
 from .size import check_size
-from .source import Source
+from .source import PictureBytes
 
 #: Time limit: seconds for any picture, and bytes of its file per second in addition.
 PATIENCE, PACE = 30.0, 10e6
 
 
 def read(
-    source: Source, kind: Kind, where: str, limit: int, *, straight: bool
+    source: PictureBytes, kind: Kind, where: str, limit: int, *, straight: bool
 ) -> tuple[NDArray[Any], list[str], int]:
     """Reads the first picture of a file.
 
@@ -47,7 +47,7 @@ def read(
         seconds = PATIENCE + source.size / PACE
         wanted = decoder.Wanted("tiff", target, limit, seconds, straight)
         output = decoder.run(name, wanted, where, kind.title)
-        plain = Source(target)
+        plain = PictureBytes(target)
         pixels = tiff.plain_pixels(plain, where, limit)
     height, width, channels = pixels.shape
     check_size(width, height, channels, pixels.dtype.itemsize, where, limit)

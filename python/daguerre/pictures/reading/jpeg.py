@@ -8,7 +8,7 @@ from __future__ import annotations
 from daguerre.errors import InputError
 
 from .size import check_size
-from .source import Source
+from .source import PictureBytes
 
 #: Most scans: each visits all pixels, however few bytes it has.
 MAX_SCANS = 500
@@ -19,7 +19,7 @@ _BARE = {0x01, *range(0xD0, 0xDA)}
 _FRAMES = set(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 
 
-def check(source: Source, where: str, limit: int) -> None:
+def check(source: PictureBytes, where: str, limit: int) -> None:
     """Checks the size, the number of scans, and that there is an end.
 
     Raises:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from daguerre.errors import InputError
 from daguerre.files.json_item import short
 
-from .source import Source
+from .source import PictureBytes
 
 #: Length of the file's start that identifies a kind, bytes.
 _START = 32
@@ -88,7 +88,7 @@ class UnknownPicture(InputError):
     """Reports bytes that are none of the kinds of pictures."""
 
 
-def kind_of(source: Source, where: str) -> Kind:
+def kind_of(source: PictureBytes, where: str) -> Kind:
     """Finds the kind of a picture.
 
     Args:
@@ -110,7 +110,7 @@ def kind_of(source: Source, where: str) -> Kind:
     raise UnknownPicture(f"{where}: cannot be decoded: wanted one of {READ}; got {got}")
 
 
-def _is_targa(source: Source) -> bool:
+def _is_targa(source: PictureBytes) -> bool:
     """Whether a file can be a TGA (TGA file format specification 2.0, chapter 3)."""
     head = source.at(0, 18)
     return (
@@ -121,7 +121,7 @@ def _is_targa(source: Source) -> bool:
     )
 
 
-def _is_rla(source: Source) -> bool:
+def _is_rla(source: PictureBytes) -> bool:
     """Whether a file can be an RLA: its head has 740 bytes, with a revision at byte 26."""
     return source.size >= 740 and source.at(26, 2) in (b"\xff\xfe", b"\0\0")
 

@@ -13,7 +13,7 @@ from daguerre.errors import InputError
 from daguerre.files.json_item import short
 
 from .size import check_size
-from .source import Source
+from .source import PictureBytes
 
 _SIGNATURE_BYTES = 8
 # Bits by colour type (11.2.1).
@@ -21,7 +21,7 @@ _DEPTHS = {0: (1, 2, 4, 8, 16), 2: (8, 16), 3: (1, 2, 4, 8), 4: (8, 16), 6: (8, 
 _CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}
 
 
-def check(source: Source, where: str, limit: int) -> None:
+def check(source: PictureBytes, where: str, limit: int) -> None:
     """Checks chunks, checksums and header.
 
     Raises:

@@ -10,12 +10,12 @@ import re
 from daguerre.errors import InputError
 
 from .size import check_size
-from .source import Source
+from .source import PictureBytes
 
 _SIZE = re.compile(rb"\n\n([+-])[XY] (\d{1,9}) ([+-])[XY] (\d{1,9})\n")
 
 
-def check(source: Source, where: str, limit: int) -> None:
+def check(source: PictureBytes, where: str, limit: int) -> None:
     """Checks the size; each line of pixels takes four bytes or more.
 
     Raises:

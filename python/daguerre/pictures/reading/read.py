@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from . import apart, jpeg, library, png, radiance, targa, tiff, webp
 from .kinds import kind_of
 from .size import MAX_BYTES
-from .source import Source
+from .source import PictureBytes
 
 #: Checks before a kind is decoded in this process; a check returns False to decode apart instead.
-_CHECKS: dict[str, Callable[[Source, str, int], bool | None]] = {
+_CHECKS: dict[str, Callable[[PictureBytes, str, int], bool | None]] = {
     "png": png.check,
     "jpeg": jpeg.check,
     "webp": webp.check,
@@ -26,7 +26,7 @@ _CHECKS: dict[str, Callable[[Source, str, int], bool | None]] = {
 
 
 @dataclass(frozen=True)
-class Picture:
+class FilePicture:
     """A picture with the numbers of its file.
 
     Attributes:
@@ -42,7 +42,9 @@ class Picture:
     kind: str
 
 
-def read(source: Source, where: str, limit: int = MAX_BYTES, *, floats: bool = False) -> Picture:
+def read(
+    source: PictureBytes, where: str, limit: int = MAX_BYTES, *, floats: bool = False
+) -> FilePicture:
     """Reads the first picture of a file, other than OpenEXR.
 
     Args:
@@ -61,10 +63,10 @@ def read(source: Source, where: str, limit: int = MAX_BYTES, *, floats: bool = F
         with source.file(kind.suffixes) as name:
             pixels, spec = library.read(name, where, limit, floats=floats)
         turn = spec.get_int_attribute("Orientation", 1)
-        return Picture(pixels, tuple(str(name) for name in spec.channelnames), turn, kind.name)
+        return FilePicture(pixels, tuple(str(name) for name in spec.channelnames), turn, kind.name)
     pixels, names, turn = apart.read(source, kind, where, limit, straight=not floats)
     if floats and np.issubdtype(pixels.dtype, np.integer):
         pixels = pixels.astype(np.float32) / np.float32(np.iinfo(pixels.dtype).max)
     elif floats:
         pixels = pixels.astype(np.float32)
-    return Picture(pixels, tuple(names), turn, kind.name)
+    return FilePicture(pixels, tuple(names), turn, kind.name)

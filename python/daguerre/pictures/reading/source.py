@@ -14,7 +14,7 @@ from daguerre.files.reading import opened, read_bytes, reading, size_of
 MAX_FILE = 4 << 30
 
 
-class Source:
+class PictureBytes:
     """A picture before its kind is known.
 
     Args:

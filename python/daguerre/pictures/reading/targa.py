@@ -10,7 +10,7 @@ import struct
 from daguerre.errors import InputError
 
 from .size import check_size
-from .source import Source
+from .source import PictureBytes
 
 _HEAD = 18
 _PALETTE, _PACKED = (1, 9), (9, 10, 11)
@@ -18,7 +18,7 @@ _PALETTE, _PACKED = (1, 9), (9, 10, 11)
 _PACKET = 128
 
 
-def check(source: Source, where: str, limit: int) -> None:
+def check(source: PictureBytes, where: str, limit: int) -> None:
     """Checks the palette, the size, and that the file can hold the pixels.
 
     Raises:

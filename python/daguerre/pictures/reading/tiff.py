@@ -17,7 +17,7 @@ from daguerre.checks import DEFLATE_LIMIT
 from daguerre.errors import InputError
 
 from .size import check_size
-from .source import Source
+from .source import PictureBytes
 
 _WIDTH, _HEIGHT, _BITS, _COMPRESSION, _PHOTOMETRIC = 256, 257, 258, 259, 262
 _STRIPS, _CHANNELS, _ROWS, _STRIP_BYTES, _PLANAR = 273, 277, 278, 279, 284
@@ -38,7 +38,7 @@ _WANTED = {
 Tags = dict[int, tuple[int, ...]]
 
 
-def check(source: Source, where: str, limit: int) -> bool:
+def check(source: PictureBytes, where: str, limit: int) -> bool:
     """Checks the size of the first picture, and whether it is plain.
 
     Returns:
@@ -88,7 +88,7 @@ def _is_whole(tags: Tags, size: int, growth: int) -> bool:
     )
 
 
-def plain_pixels(source: Source, where: str, limit: int) -> NDArray[np.generic]:
+def plain_pixels(source: PictureBytes, where: str, limit: int) -> NDArray[np.generic]:
     """Reads pixels that are not packed, pixel by pixel; shape (H, W, C).
 
     Raises:
@@ -113,7 +113,7 @@ def plain_pixels(source: Source, where: str, limit: int) -> NDArray[np.generic]:
     return pixels.astype(dtype.newbyteorder("="), copy=False)
 
 
-def read_tags(source: Source, where: str) -> Tags:
+def read_tags(source: PictureBytes, where: str) -> Tags:
     """Reads the whole numbers of the first directory; each tag has at least one number.
 
     Raises:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from daguerre.errors import InputError
 
-from .source import Source
+from .source import PictureBytes
 
 
-def check(source: Source, where: str, limit: int) -> None:
+def check(source: PictureBytes, where: str, limit: int) -> None:
     """Checks the length; a WebP cannot be larger than 16383 x 16383 px.
 
     Raises:

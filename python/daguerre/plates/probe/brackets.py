@@ -22,7 +22,7 @@ from .shots import Shot, White, check_together, read_shot
 
 
 @dataclass(frozen=True)
-class View:
+class SetView:
     """A view of the set.
 
     Attributes:
@@ -61,7 +61,7 @@ class Reading:
     notes: Notes
 
 
-def read_view(paths: Sequence[str | Path], ev: Sequence[float] | None, how: Reading) -> View:
+def read_view(paths: Sequence[str | Path], ev: Sequence[float] | None, how: Reading) -> SetView:
     """Reads the photographs of one view and merges them.
 
     Raises:
@@ -82,7 +82,7 @@ def read_view(paths: Sequence[str | Path], ev: Sequence[float] | None, how: Read
         raise InputError(f"{shots[0].path}: the picture is black; take it with more exposure")
     if merged.negative:
         how.notes.add("pixel outside the Rec.709 gamut: negative light set to 0", merged.negative)
-    return View(merged, shots, exposures, kind)
+    return SetView(merged, shots, exposures, kind)
 
 
 def _curve(shots: list[Shot], stops: tuple[float, ...], how: Reading) -> tuple[FloatArray, str]:

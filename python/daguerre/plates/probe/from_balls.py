@@ -12,8 +12,8 @@ from daguerre.errors import InputError
 
 from .asked import Asked
 from .ball import Ball, Circle, points_on, seen_ball
-from .brackets import View, read_view
-from .from_panorama import Source
+from .brackets import SetView, read_view
+from .from_panorama import PanoramaLight
 from .grey import Lighting, Shading, lighting_of, shading_of
 from .harmonics import basis
 from .latlong import centres, solid_angles, world_from_camera
@@ -24,7 +24,7 @@ from .unwrap import SeenBall, Unwrapped, unwrap, usual_width
 GREY_WIDTH = 1024
 
 
-def mirror_balls(asked: Asked) -> Source:
+def mirror_balls(asked: Asked) -> PanoramaLight:
     """Unwraps photographs of mirror balls, from one or more sides.
 
     Raises:
@@ -49,10 +49,10 @@ def mirror_balls(asked: Asked) -> Source:
         "balls": balls,
         "unseen_share": _share(made),
     }
-    return Source(made.light, made.clipped, absolute, facts)
+    return PanoramaLight(made.light, made.clipped, absolute, facts)
 
 
-def _one_unit(views: list[View]) -> bool:
+def _one_unit(views: list[SetView]) -> bool:
     """Checks that all sides have one unit; returns whether it is cd/m2."""
     absolute = all(view.exposures.absolute for view in views)
     if not absolute and len(views) > 1 and any(view.exposures.absolute for view in views):
@@ -70,7 +70,7 @@ def _share(made: Unwrapped) -> float:
 
 
 def _ball(
-    asked: Asked, view: View, circle: Circle | None, yaw: float
+    asked: Asked, view: SetView, circle: Circle | None, yaw: float
 ) -> tuple[Ball, dict[str, Any]]:
     """Returns the ball of a view, found or as given, and facts for JSON."""
     outline = _outline(view, circle)
@@ -88,7 +88,7 @@ def _ball(
     return ball, facts
 
 
-def _outline(view: View, circle: Circle | None) -> Outline:
+def _outline(view: SetView, circle: Circle | None) -> Outline:
     width, height = view.shots[0].size
     if circle is None:
         return find_outline(view.merged.light, str(view.path))
@@ -101,7 +101,7 @@ def _outline(view: View, circle: Circle | None) -> Outline:
     return Outline(circle, points_on(circle), 1.0, 0.0)
 
 
-def _focal_px(asked: Asked, view: View) -> float:
+def _focal_px(asked: Asked, view: SetView) -> float:
     """Focal length, px, from the field of view, else from EXIF; infinite: unknown, or far away."""
     if asked.fov is not None:
         if asked.fov < 1e-6:
@@ -125,7 +125,7 @@ def shading(asked: Asked, paths: list[Path], circle: Circle | None, yaw: float) 
     return shading_of(view.merged, ball, turn, reflectance), view, facts
 
 
-def grey_ball(asked: Asked) -> Source:
+def grey_ball(asked: Asked) -> PanoramaLight:
     """Finds the light that explains a matt ball: soft light of order 2, and a sun.
 
     Raises:
@@ -145,7 +145,7 @@ def grey_ball(asked: Asked) -> Source:
         "fit_error": lighting.error,
     }
     none = np.zeros(light.shape[:2], bool)
-    return Source(light, none, view.exposures.absolute, facts, _sun(lighting))
+    return PanoramaLight(light, none, view.exposures.absolute, facts, _sun(lighting))
 
 
 def _sun(lighting: Lighting) -> Any:

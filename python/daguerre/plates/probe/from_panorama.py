@@ -17,7 +17,7 @@ from .panorama import resized, turned
 
 
 @dataclass(frozen=True)
-class Source:
+class PanoramaLight:
     """An environment before the search for the sun.
 
     Attributes:
@@ -35,7 +35,7 @@ class Source:
     sun: tuple[FloatArray, FloatArray] | None = None
 
 
-def panorama(asked: Asked) -> Source:
+def panorama(asked: Asked) -> PanoramaLight:
     """Reads a bracketed panorama, 2:1, in the frame of environments.
 
     Raises:
@@ -53,4 +53,4 @@ def panorama(asked: Asked) -> Source:
     clipped = view.merged.clipped.astype(np.float32)[..., None]
     over = resized(turned(clipped, asked.rotate), *size)[..., 0]
     facts = {"photographs": view.facts(), "response": view.curve, "kind": "panorama"}
-    return Source(light, over > 1e-3, view.exposures.absolute, facts)
+    return PanoramaLight(light, over > 1e-3, view.exposures.absolute, facts)

@@ -11,7 +11,7 @@ from daguerre.errors import InputError
 
 from .asked import Asked
 from .from_balls import shading
-from .from_panorama import Source
+from .from_panorama import PanoramaLight
 from .restore import (
     by_grey_ball,
     by_illuminance,
@@ -33,7 +33,7 @@ class Lit:
     warnings: tuple[str, ...] = ()
 
 
-def sun_and_light(asked: Asked, source: Source) -> Lit:
+def sun_and_light(asked: Asked, source: PanoramaLight) -> Lit:
     """Finds the sun and the light lost to clipping.
 
     Raises:
@@ -49,7 +49,7 @@ def sun_and_light(asked: Asked, source: Source) -> Lit:
     return _scaled(lit, asked.illuminance) if asked.illuminance else lit
 
 
-def _taken(asked: Asked, source: Source, solve: bool) -> Taken | None:
+def _taken(asked: Asked, source: PanoramaLight, solve: bool) -> Taken | None:
     if source.sun is not None:
         if asked.sun == "off":
             return None
@@ -63,7 +63,7 @@ def _taken(asked: Asked, source: Source, solve: bool) -> Taken | None:
     return take_out(source.light, source.clipped, seek_clipped=solve)
 
 
-def _as_it_is(asked: Asked, source: Source, taken: Taken | None) -> Lit:
+def _as_it_is(asked: Asked, source: PanoramaLight, taken: Taken | None) -> Lit:
     """Keeps the light as photographed, with a warning if it is clipped."""
     warnings = _warnings(source)
     if taken is None:
@@ -81,7 +81,7 @@ def _sized(asked: Asked, sun: Sun) -> Sun:
     return replace(sun, diameter_deg=DIAMETER_DEG) if sun.clipped else sun
 
 
-def _warnings(source: Source) -> tuple[str, ...]:
+def _warnings(source: PanoramaLight) -> tuple[str, ...]:
     if not source.clipped.any():
         return ()
     facts = clipped_facts(source.light, source.clipped)
@@ -94,7 +94,7 @@ def _warnings(source: Source) -> tuple[str, ...]:
     )
 
 
-def _solved(asked: Asked, source: Source, taken: Taken | None) -> Lit:
+def _solved(asked: Asked, source: PanoramaLight, taken: Taken | None) -> Lit:
     """Solves for the sun from a light meter or a matt ball."""
     if taken is None or not taken.sun.clipped:
         raise InputError(

@@ -21,7 +21,7 @@ from daguerre.post.effect import Effect, Step, Values
 from daguerre.post.iris import BLADES, iris_shape
 from daguerre.post.optics import FOCAL_LENGTH, SENSOR, film_plane, focal_length_mm, offsets
 from daguerre.post.parameter import Parameter
-from daguerre.post.picture import Band, Canvas, Image, Source, bands
+from daguerre.post.picture import Band, Canvas, Image, RowSource, bands
 
 Floats = NDArray[np.float32]
 SCAN = 256  # rows
@@ -92,7 +92,7 @@ class _DepthOfField(Step):
         self._largest = float(0.1 * canvas.full_size[0] if largest is None else largest)
         self._held = self._unknown = 0
 
-    def prepare(self, source: Source) -> None:
+    def prepare(self, source: RowSource) -> None:
         """Finds the largest blur, and counts pixels without a depth."""
         low = high = 0.0
         for band in bands(source, SCAN):

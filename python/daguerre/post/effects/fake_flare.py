@@ -24,7 +24,7 @@ from daguerre.post.by_four_channels import by_four_channels
 from daguerre.post.effect import Effect, Step, Values
 from daguerre.post.iris import BLADES, iris_shape, outline
 from daguerre.post.parameter import Parameter
-from daguerre.post.picture import Band, Canvas, Image, Source, bands
+from daguerre.post.picture import Band, Canvas, Image, RowSource, bands
 
 SCAN = 256  # rows
 LARGEST = 512  # px, size of the reduced picture in which flare is drawn
@@ -71,7 +71,7 @@ class _FakeFlare(Step):
         self._block = math.ceil(max(canvas.width, canvas.height) / LARGEST)
         self._flare: Image = np.zeros((1, 1, self._colors), np.float32)
 
-    def prepare(self, source: Source) -> None:
+    def prepare(self, source: RowSource) -> None:
         """Collects highlights in a small picture, and draws their flare there."""
         canvas, block = self._canvas, self._block
         height, width = (math.ceil(n / block) for n in (canvas.height, canvas.width))

@@ -23,7 +23,7 @@ from daguerre.post.array import on_array
 from daguerre.post.by_four_channels import by_four_channels
 from daguerre.post.effect import Effect, Step, Values
 from daguerre.post.parameter import Parameter
-from daguerre.post.picture import Band, Canvas, Image, Source, bands
+from daguerre.post.picture import Band, Canvas, Image, RowSource, bands
 
 Floats = NDArray[np.float32]
 SCAN = 256  # rows
@@ -49,7 +49,7 @@ class _MotionBlur(Step):
         self._arrived = _arrived(values)
         self._missing = 0
 
-    def prepare(self, source: Source) -> None:
+    def prepare(self, source: RowSource) -> None:
         """Finds the longest motion."""
         farthest = 0.0
         for band in bands(source, SCAN):

@@ -64,7 +64,7 @@ class Faces:
     holes: NDArray[np.bool_]
 
 
-class Surface(Value):
+class DrawnPolygons(Value):
     """Polygons of a mesh as they are drawn, without subdivision."""
 
     #: whether ``points`` has normals, and takes long
@@ -122,7 +122,7 @@ class Surface(Value):
         return values.take(self.vertices, axis=0)
 
 
-class Subdivided(Surface):
+class Subdivided(DrawnPolygons):
     """The limit surface of a mesh, at a level of refinement."""
 
     smooth = True
@@ -176,7 +176,7 @@ class LimitOverTime(Value):
     """
 
     points: Dynamic
-    surface: Surface
+    surface: DrawnPolygons
     origins: NDArray[np.int64]
     rest: Vertices
     flipped: bool

@@ -19,7 +19,7 @@ from .holes import kept_faces
 from .loop import Loop
 from .rules import MAX_LEVEL, SCHEMES, FloatArray, IntArray, Rules, choice
 from .scheme import Scheme
-from .surface import Surface
+from .surface import RefinedSurface
 
 #: Maximum number of faces of a refined mesh; they take 2 GB while it is made.
 MAX_FACES = 1 << 22
@@ -164,21 +164,21 @@ class Refiner(Value):
         return opened_mesh(self._faces, self.rules, everywhere=self._scheme.linear)
 
     @cached_property
-    def _main(self) -> Surface:
-        return Surface(cut_mesh(self._faces, self._opened), self._scheme, self.level)
+    def _main(self) -> RefinedSurface:
+        return RefinedSurface(cut_mesh(self._faces, self._opened), self._scheme, self.level)
 
     @cached_property
-    def _surfaces(self) -> dict[bytes, Surface]:
+    def _surfaces(self) -> dict[bytes, RefinedSurface]:
         """Surfaces of values per corner, by their indices; at most the last surface."""
         return {}
 
-    def _seams(self, chosen: IntArray) -> Surface:
+    def _seams(self, chosen: IntArray) -> RefinedSurface:
         """Surface with values as control vertices."""
         key, kept = chosen.tobytes(), self._surfaces
         found = kept.get(key)
         if found is None:
             cut = cut_values(self._faces, self._opened, self.rules.face_varying, chosen)
-            found = Surface(cut, self._scheme, self.level)
+            found = RefinedSurface(cut, self._scheme, self.level)
             kept.clear()
             kept[key] = found
         return found

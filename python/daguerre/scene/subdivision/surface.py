@@ -19,7 +19,7 @@ from .step import Step, linear_step, smooth_step
 _CHUNK = 1 << 16
 
 
-class Surface:
+class RefinedSurface:
     """Points of a surface from its control points.
 
     Args:

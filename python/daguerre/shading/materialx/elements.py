@@ -57,14 +57,14 @@ def parse(data: bytes, file: str) -> Element:
         raise InputError(f"{file}: XML: wanted at most {MAX_BYTES} bytes, got {len(data)}")
     data = _LATE.sub(rb"\2\1", data, count=1)
     data = _COMMENT.sub(lambda found: found[0].replace(b"-", b" "), data)
-    reader = _Reader(file)
+    reader = _ElementReader(file)
     with xml_errors(file):
         reader.parser.Parse(data, True)
     assert reader.root is not None  # expat refuses a text without an element
     return reader.root
 
 
-class _Reader:
+class _ElementReader:
     """Builds a tree from the events of expat."""
 
     def __init__(self, file: str) -> None:
