@@ -71,6 +71,9 @@ void bind_motion(nb::module_& m) {
                  return m.spinning({vec(axis), revolutions_per_second, vec(center), time});
              },
              "axis"_a, "revolutions_per_second"_a, "center"_a = Triple{0, 0, 0}, "time"_a = 0.0)
+        .def("relative_to",
+             [](const Motion& m, const Triple& world_origin) { return m.relative_to(vec(world_origin)); },
+             "world_origin"_a, "The same in a world with its origin at this point, m.")
         .def_prop_ro("moves", &Motion::moves)
         .def("over", &Motion::over, "open"_a, "close"_a,
              "The same with open (s) as time 0 and close as 1; still if it does not move in between.")

@@ -25,7 +25,9 @@ namespace dg::bind {
 namespace {
 
 using Triple = std::array<float, 3>;
+using Place = std::array<double, 3>;   // in the world, m
 Vec3f vec(const Triple& v) { return {v[0], v[1], v[2]}; }
+Vec3d vec(const Place& v) { return {v[0], v[1], v[2]}; }
 Rgb to_rgb(const Triple& c) { return {c[0], c[1], c[2]}; }
 
 using Pixels8 = nb::ndarray<const std::uint8_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
@@ -65,6 +67,14 @@ std::shared_ptr<const Shown> to_shown(const Intervals& intervals) {
 /// Collects the parts of a scene; Scene::build validates them.
 struct Builder {
     SceneDescription description;
+
+    /// A point, and a transform, in the scene's frame.
+    Vec3f here(const Place& place) const { return to_float(vec(place) - description.origin); }
+    Affine3d here(const Matrix4& matrix, const Place& local_origin = {}) const {
+        Affine3d m = to_affine(matrix);
+        m.origin = m.point(vec(local_origin)) - description.origin;
+        return m;
+    }
 
     int add_mesh(const std::string& name, const Vectors3& positions, const Rows3u& triangles,
                  std::optional<Vectors3> normals, std::optional<Rows2f> uv0,
@@ -139,16 +149,17 @@ struct Builder {
     }
 
     int add_instance(const std::string& name, std::uint32_t mesh, std::uint32_t material,
-                     const Matrix4& matrix, const Intervals& shown) {
+                     const Matrix4& matrix, const Intervals& shown, const Place& local_origin) {
         description.instances.push_back(
-            {name, mesh, material, to_float(to_affine(matrix)), nullptr, to_shown(shown)});
+            {name, mesh, material, to_float(here(matrix, local_origin)), nullptr, to_shown(shown), {}, vec(local_origin)});
         return int(description.instances.size()) - 1;
     }
 
     int add_moving_instance(const std::string& name, std::uint32_t mesh, std::uint32_t material,
-                            const Motion& motion, const Intervals& shown) {
+                            const Motion& motion, const Intervals& shown, const Place& local_origin) {
+        const Motion own = motion.relative_to(description.origin, vec(local_origin));
         description.instances.push_back({name, mesh, material, {},
-                                         std::make_shared<const Motion>(motion), to_shown(shown)});
+                                         std::make_shared<const Motion>(own), to_shown(shown), {}, vec(local_origin)});
         return int(description.instances.size()) - 1;
     }
 
@@ -201,10 +212,10 @@ struct Builder {
 };
 
 
-std::optional<std::tuple<float, std::uint32_t>> first_hit(const Scene& scene, const Triple& origin,
+std::optional<std::tuple<float, std::uint32_t>> first_hit(const Scene& scene, const Place& origin,
                                                           const Triple& direction, float t_min) {
     Ray ray;
-    ray.origin = vec(origin);
+    ray.origin = to_float(vec(origin) - scene.origin());
     ray.direction = normalize(vec(direction));
     ray.time = 0.5f;
     ray.t_min = t_min;
@@ -220,10 +231,12 @@ void bind_built_scene(nb::module_& m) {
         .def_prop_ro("intersector", &Scene::intersector_name)
         .def_prop_ro("bounds",
                      [](const Scene& s) {
-                         const auto b = s.bounds();
-                         return std::tuple{Triple{b.min.x, b.min.y, b.min.z},
-                                           Triple{b.max.x, b.max.y, b.max.z}};
+                         const Vec3d low = to_double(s.bounds().min) + s.origin();
+                         const Vec3d high = to_double(s.bounds().max) + s.origin();
+                         return std::tuple{Place{low.x, low.y, low.z}, Place{high.x, high.y, high.z}};
                      })
+        .def_prop_ro("origin", [](const Scene& s) { return std::tuple{s.origin().x, s.origin().y, s.origin().z}; },
+                     "Origin of the scene's frame in the world, m. Arguments and results are in the world.")
         .def("first_hit", &first_hit, "origin"_a, "direction"_a, "t_min"_a = 0.f,
              "Distance (m) and instance index of the nearest surface at mid-interval, beyond t_min, or None.");
 }
@@ -239,9 +252,11 @@ void def_shapes(nb::class_<Builder>& c) {
         .def("add_texture", &Builder::add_texture, "name"_a, "pixels"_a, "srgb"_a, "wrap_u"_a,
              "wrap_v"_a, "filter"_a, "min_filter"_a)
         .def("add_instance", &Builder::add_instance, "name"_a, "mesh"_a, "material"_a, "matrix"_a,
-             "shown"_a = nb::none(), "shown: intervals (open, close), s, in which it is there; None: always.")
+             "shown"_a = nb::none(), "local_origin"_a = Place{},
+             "shown: intervals (open, close), s, in which it is there; None: always. local_origin: the mesh's "
+             "positions are relative to this point of its space.")
         .def("add_instance", &Builder::add_moving_instance, "name"_a, "mesh"_a, "material"_a,
-             "motion"_a, "shown"_a = nb::none())
+             "motion"_a, "shown"_a = nb::none(), "local_origin"_a = Place{})
         .def("set_catcher", &Builder::set_catcher, "instance"_a, "shadow"_a, "reflection"_a, "gi"_a,
              "Makes an instance a part of the set: which effects of objects it catches.");
 }
@@ -267,13 +282,13 @@ LampShape to_lamp(const Lamp& lamp) {
 void def_lights(nb::class_<Builder>& c) {
     c.def("add_profile", &Builder::add_profile, "profile"_a)
         .def("add_point_light",
-             [](Builder& b, const Triple& position, const Triple& intensity, float range, const Lamp& lamp) {
-                 b.add_light(PointLight{vec(position), to_rgb(intensity), range, to_lamp(lamp)});
+             [](Builder& b, const Place& position, const Triple& intensity, float range, const Lamp& lamp) {
+                 b.add_light(PointLight{b.here(position), to_rgb(intensity), range, to_lamp(lamp)});
              })
         .def("add_spot_light",
-             [](Builder& b, const Triple& position, const Triple& direction,
+             [](Builder& b, const Place& position, const Triple& direction,
                 const Triple& intensity, float inner_rad, float outer_rad, float range) {
-                 b.add_light(SpotLight{vec(position), normalize(vec(direction)), to_rgb(intensity),
+                 b.add_light(SpotLight{b.here(position), normalize(vec(direction)), to_rgb(intensity),
                                        inner_rad, outer_rad, range});
              })
         .def("add_directional_light",
@@ -281,8 +296,8 @@ void def_lights(nb::class_<Builder>& c) {
                  b.add_light(DirectionalLight{normalize(vec(direction)), to_rgb(illuminance), angle_rad});
              })
         .def("add_sphere_light",
-             [](Builder& b, const Triple& center, float radius, const Triple& luminance, const Lamp& lamp) {
-                 b.add_light(SphereLight{{vec(center), radius}, to_rgb(luminance), to_lamp(lamp)});
+             [](Builder& b, const Place& center, float radius, const Triple& luminance, const Lamp& lamp) {
+                 b.add_light(SphereLight{{b.here(center), radius}, to_rgb(luminance), to_lamp(lamp)});
              });
 }
 
@@ -347,7 +362,8 @@ void bind_scene(nb::module_& m) {
     using namespace dg::bind;
     bind_built_scene(m);
     nb::class_<Builder> c(m, "SceneBuilder");
-    c.def(nb::init<>());
+    c.def("__init__", [](Builder* b, const Place& origin) { new (b) Builder{.description = {.origin = vec(origin)}}; },
+          "origin"_a = Place{}, "origin: of the scene's frame, in the world, m; its axes are the world's.");
     def_shapes(c);
     c.def("add_material", &Builder::add_material, "name"_a, "kind"_a, "values"_a, "common"_a,
           "values: fields of the kind; common: those of all materials, with the index of the profile.");

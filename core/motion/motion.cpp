@@ -87,9 +87,13 @@ Motion::Turn turn_about(const Affine3d& base, Vec3d axis, const Affine3d& stretc
     return turn;
 }
 
+/// Whether the motion from one key to the next rotates.
+bool turns_to(const Motion::Segment& from, const Motion::Segment& to) {
+    return from.turns && to.turns && from.first.determinant() * to.first.determinant() > 0;
+}
+
 /// Sets rotation and change of the segment from one key to the next.
 void lead_to(Motion::Segment& from, const Motion::Segment& to, Vec3d pivot) {
-    from.turns = from.turns && to.turns && from.first.determinant() * to.first.determinant() > 0;
     if (!from.turns) {
         from.change = difference(to.first, from.first);
         return;
@@ -175,8 +179,10 @@ Motion Motion::keys(std::span<const double> times, std::span<const Affine3d> key
             segment.stretch = parts->stretch;
         }
     }
-    for (std::size_t i = 0; i + 1 < keys.size(); ++i)
+    for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
+        track.segments[i].turns = turns_to(track.segments[i], track.segments[i + 1]);
         lead_to(track.segments[i], track.segments[i + 1], pivot);
+    }
     return Motion(std::move(track));
 }
 
@@ -189,6 +195,15 @@ Motion Motion::spinning(const Spin& spin) const {
     Track track = track_or_still();
     track.spin = spin;
     track.spin.axis = spin.axis / size;
+    return Motion(std::move(track));
+}
+
+Motion Motion::relative_to(Vec3d world_origin, Vec3d local_origin) const {
+    Track track = track_or_still();
+    for (Segment& segment : track.segments) segment.first.origin = segment.first.point(local_origin) - world_origin;
+    track.pivot = track.pivot - local_origin, track.spin.center = track.spin.center - local_origin;
+    for (std::size_t i = 0; i + 1 < track.segments.size(); ++i)
+        lead_to(track.segments[i], track.segments[i + 1], track.pivot);
     return Motion(std::move(track));
 }
 

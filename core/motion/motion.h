@@ -44,6 +44,10 @@ class Motion {
     /// This motion, applied after the rotation `spin`.
     Motion spinning(const Spin& spin) const;
 
+    /// This motion between frames with other origins, both along the axes of the frames before: `world_origin` in the
+    /// world, `local_origin` in the local space. Exact for shifts that double represents.
+    Motion relative_to(Vec3d world_origin, Vec3d local_origin = {}) const;
+
     bool moves() const { return track_ != nullptr; }
     Affine3d at(double time) const { return track_ ? track_->at(time) : still_; }
 

@@ -39,6 +39,19 @@ TEST_CASE("every interpolation meets its keys and holds them outside") {
     }
 }
 
+TEST_CASE("other origins of the world and the local space leave every point where it was") {
+    const Affine3d a = turned({0, 0, 1}, 20, {1, 2, 3}), b = turned({0, 1, 0}, 70, {4, 5, 6});
+    const Vec3d p{0.3, -0.7, 0.9}, world{512000, 1024, -5399552}, local{1024, 0, -2048};
+    for (const Interpolation how : kAll) {
+        const Motion still = between(a, b, how, {0.5, 0, 1});
+        for (const Motion& m : {still, still.spinning({{0, 1, 1}, 3, {0.25, 0, 0}, 0.1})}) {
+            const Motion moved = m.relative_to(world, local);
+            for (const double t : {-1.0, 0.0, 0.3, 0.5, 1.0, 2.0})
+                CHECK(apart(moved.at(t).point(p - local), m.at(t).point(p) - world) < 1e-8);
+        }
+    }
+}
+
 TEST_CASE("a turn: constant speed, and linear shrinks by cos(angle / 2) at mid-time") {
     for (const double degrees : {1.0, 10.0, 21.0, 45.0, 170.0, 180.0}) {
         CAPTURE(degrees);

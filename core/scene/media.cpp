@@ -95,13 +95,14 @@ Interior Scene::medium_behind(const Interior& here, std::uint32_t instance, cons
 
 GridRay Scene::grid_ray(const Interior& in, const Ray& ray) const {
     const DensityGrid& grid = *in.medium->density;
-    Affine3d unit_from_world = grid.unit_from_space();
+    Affine3d space_from_scene{.origin = origin()};
     if (in.instance != Interior::kWorld) {
         PlacementRoom made;
-        const Placement& placement = records_[in.instance].placement(ray.time, made);
-        unit_from_world = unit_from_world * inverse(placement.world_from_local);
+        space_from_scene = inverse(records_[in.instance].placement(ray.time, made).world_from_local);
+        space_from_scene.origin += description_.instances[in.instance].local_origin;
     }
-    return {grid, unit_from_world.point(to_double(ray.origin)), unit_from_world.vector(to_double(ray.direction))};
+    const Affine3d unit_from_scene = grid.unit_from_space() * space_from_scene;
+    return {grid, unit_from_scene.point(to_double(ray.origin)), unit_from_scene.vector(to_double(ray.direction))};
 }
 
 Spectrum Scene::through_medium(const Interior& in, const Ray& ray, float begin, float end,

@@ -29,6 +29,7 @@ struct Instance {
     std::shared_ptr<const Motion> motion = nullptr; // over time in s; null: static
     std::shared_ptr<const Shown> shown = nullptr;   // visibility over time in s; null: always visible
     std::optional<CatcherEffects> catcher = {};     // set for catchers; empty: an object
+    Vec3d local_origin{};                           // the mesh's positions are relative to it
 };
 
 /// Input of Scene::build, which adds the lights of emissive meshes.
@@ -45,6 +46,9 @@ struct SceneDescription {
     /// Exposed interval of the picture, s, over all rows of the film. Times inside the scene are fractions of it, 0 ..
     /// 1.
     TimeInterval interval;
+    /// Origin of the scene's frame in the world, m; all positions are relative to it, so that they keep their precision
+    /// as floats.
+    Vec3d origin{};
     /// Available memory for building the scene, bytes; 0: unknown.
     std::uint64_t free_memory = 0;
     /// Animation keys over time (s), by index; materials and lights without keys are static.
@@ -166,6 +170,8 @@ class Scene {
     };
     /// Bounds of the instances over all times; 0 without instances.
     Bounds bounds() const { return bounds_; }
+    /// Origin of the scene's frame in the world, m.
+    Vec3d origin() const { return description_.origin; }
     std::size_t triangle_count() const { return triangle_count_; }  // of all instances
     const SceneDescription& description() const { return description_; }
     const char* intersector_name() const { return intersector_->name(); }

@@ -399,7 +399,9 @@ def test_a_wish_for_values_of_a_picture_to_come_is_served_at_once() -> None:
     pool.workers.wait()
     made = scene()
     keep = pool.values.keep
-    submission = pool.begin(on_worker.Task(keep(made), keep((made.camera(), HOW, None)), 0, 1))
+    submission = pool.begin(
+        on_worker.Task(keep(made), keep((made.camera(), HOW, None, None)), 0, 1)
+    )
     assert submission.has_words
     pool.serve()
     (again,) = pool.submissions

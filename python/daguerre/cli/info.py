@@ -51,8 +51,8 @@ def info(
     that it describes: use them to try a lens or a stop.
     """
     from daguerre.camera.camera import Camera
+    from daguerre.distortion.rectified import built
     from daguerre.setup import camera_facts as facts_of
-    from daguerre.setup.scene import build
 
     changes = camera_flags.changes() | shutter_flags.changes()
     flags = Cameras(camera_flags.camera, calibration_flags, changes, camera_flags.placement)
@@ -65,8 +65,9 @@ def info(
     sizes = {view.name: flags.size(view, res, scene) for view in views}
     content = facts_of.scene_facts(scene)
     core_scene = None
-    if any(facts_of.needs_autofocus(camera) for camera in cameras.values()):
-        core_scene = build(scene)
+    focusing = [name for name, c in cameras.items() if facts_of.needs_autofocus(c)]
+    if focusing:
+        core_scene = built(scene, cameras[focusing[0]], sizes[focusing[0]])
     facts = {n: facts_of.camera_facts(c, scene, core_scene, sizes[n]) for n, c in cameras.items()}
     warnings = {n: facts_of.camera_warnings(c) for n, c in cameras.items()}
     if json:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from daguerre.rendering.picture import Picture
     from daguerre.rendering.session import Session
     from daguerre.rendering.settings import RenderSettings
+    from daguerre.scene.far import Place
     from daguerre.scene.scene import Scene
 
     from .sharing import Sharing
@@ -54,7 +55,8 @@ class Spread:
             self.pool.drop_all()  # of a picture before that was stopped
             self._homes.clear()
             shown = session.scene, session.camera, session.settings
-            self._places = {0: self._kept(*shown, session.light_plan.piloted)}
+            fixed = session.light_plan.piloted, session.built.origin
+            self._places = {0: self._kept(*shown, *fixed)}
             return self._places[0]
         self._now = self.job.done
         for number in [n for n in self._places if n < self._now]:
@@ -159,12 +161,17 @@ class Spread:
             picture, job = self.job.pictures[number], self.job
             shown = job.scene_of(picture), job.camera_of(picture), picture.settings
             piloted = None if session is None else session.light_plan.piloted
-            self._places[number] = self._kept(*shown, piloted)
+            self._places[number] = self._kept(*shown, piloted, job.origin_of(picture))
         return self._places[number]
 
     def _kept(
-        self, scene: Scene, camera: Camera, settings: RenderSettings, piloted: Plan | None
+        self,
+        scene: Scene,
+        camera: Camera,
+        settings: RenderSettings,
+        piloted: Plan | None,
+        origin: Place,
     ) -> SceneKey:
         """Place of a picture; the pool keeps its values."""
         keep = self.pool.values.keep
-        return SceneKey(keep(scene), keep((camera, settings, piloted)))
+        return SceneKey(keep(scene), keep((camera, settings, piloted, origin)))

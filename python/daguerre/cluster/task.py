@@ -180,9 +180,10 @@ def _session(scene: str, view: str, threads: int) -> Session:
     if _last is None or _last[0] != (scene, view, threads):
         built = None if _last is None else _last[1].built
         _last = None  # its film ends here
-        camera, settings, piloted = Store().value(view)
+        camera, settings, piloted, origin = Store().value(view)
         settings = replace(settings, threads=threads)
-        made = Session(_scene(scene), camera, settings=settings, built=built, piloted=piloted)
+        fixed = {"built": built, "piloted": piloted, "origin": origin}
+        made = Session(_scene(scene), camera, settings=settings, **fixed)
         _last = (scene, view, threads), made
     return _last[1]
 

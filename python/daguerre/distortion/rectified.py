@@ -15,9 +15,11 @@ from daguerre.cached import cached_property
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.overscan import NONE, Overscan
+from daguerre.camera.settled import settled
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.scene.scene import Scene
 from daguerre.setup.camera import set_up
+from daguerre.setup.origin import origin_of
 
 FloatArray = NDArray[np.float64]
 
@@ -117,4 +119,6 @@ def built(scene: Scene | None, camera: Camera, resolution: tuple[int, int]) -> _
         return None
     from daguerre.setup.scene import build
 
-    return build(scene, shutter.interval(camera, scene.time, resolution))
+    camera = settled(camera, scene.time)
+    origin = origin_of(camera, scene.time, resolution)
+    return build(scene, shutter.interval(camera, scene.time, resolution), origin=origin)

@@ -74,7 +74,7 @@ def balls_of(mesh: Mesh) -> Balls:
     """Finds the points of a mesh that have a surface around them, and its distance from each."""
     if isinstance(mesh, Curves):
         return balls_along(mesh)
-    return mesh.positions[np.unique(mesh.indices)], np.zeros((1, 1))
+    return mesh.points[np.unique(mesh.indices)], np.zeros((1, 1))
 
 
 def rotation_of(world: FloatArray) -> FloatArray:

@@ -71,9 +71,10 @@ class RayMap(BriefRecord):
         """
         from daguerre.pictures.exr.write import attributes, write_planes
 
+        near = self.origin - np.array(self.metadata.get("world_origin") or (0.0, 0.0, 0.0))
         planes = {
             f"{name}.{axis}": values[:, :, k].astype(np.float32)
-            for name, values in (("origin", self.origin), ("direction", self.direction))
+            for name, values in (("origin", near), ("direction", self.direction))
             for k, axis in enumerate("XYZ")
         }
         planes["time.R"] = self.time.astype(np.float32)
@@ -155,7 +156,9 @@ def rays_of(
     world = frame == "world"
     with core_errors(InputError, "render"):
         origin, direction, time = _core.ray_map(setup.core, settings, overscan.region(size), world)
-    if not world:
+    if world:
+        origin = origin + np.array(setup.origin)
+    else:
         origin, direction = origin * _OPENCV, direction * _OPENCV
     seconds = begin - scene.time + time * duration
     facts = camera_metadata(now, setup, size[0]) | {
@@ -164,6 +167,7 @@ def rays_of(
         "resolution": size,
         "crop": overscan.region(size),
         "overscan": str(overscan) if overscan else None,
+        "world_origin": list(setup.origin) if world and any(setup.origin) else None,
         "version": _core.__version__,
     }
     return RayMap(origin, direction, seconds, frame, facts)

@@ -12,6 +12,7 @@ from daguerre.errors import InputError, MismatchError, core_errors
 from daguerre.frame.aovs import FILM_CHANNELS
 from daguerre.frame.catcher import layers
 from daguerre.frame.frame import Frame
+from daguerre.frame.world import in_world
 
 from .mattes import mattes_of
 
@@ -75,6 +76,7 @@ def frame_of(
     planes: dict[str, NDArray[Any]] = {}
     if aovs:
         planes = {name: _plane(film, name) for name in FILM_CHANNELS}
+        planes = in_world(planes, metadata.get("world_origin"))
     parts, keep = film.state_parts(), bool(metadata.get("bands"))
     alpha = film.coverage() if "coverage" in parts else np.ones(film.shape, np.float32)
     if waves and "bands" in parts and ("pupils" in metadata or not keep):

@@ -83,6 +83,7 @@ def metadata(session: Drawn) -> dict[str, Any]:
         "pupils": prepared.pupils,
         "bands": settings.film.bands or None,
         "mattes": prepared.mattes,
+        "world_origin": list(prepared.built.origin) if any(prepared.built.origin) else None,
         "background": settings.backdrop.background,
         **sensor_metadata(prepared.sensor),
         "scene_hash": session.key["scene"],
@@ -131,6 +132,8 @@ def _settings_facts(session: Drawn) -> dict[str, Any]:
         out["objects"] = True
     if settings.film.bands:
         out["bands"] = settings.film.bands
+    if any(prepared.built.origin):
+        out["world_origin"] = list(prepared.built.origin)
     if prepared.overscan:
         out["overscan"] = str(prepared.overscan)
     if settings.backdrop.background != DEFAULT["background"]:

@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING, Any
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure
 from daguerre.camera.exposure_mode import is_automatic
+from daguerre.camera.settled import settled
 from daguerre.errors import DaguerreError, InputError
+from daguerre.scene.far import Place
 from daguerre.scene.scene import Scene
+from daguerre.setup.origin import origin_of
 
 from .checkpoint import INTERVAL_S, Checkpoint
 from .film_memory import check_denoised, check_picture, kept_films
@@ -156,6 +159,12 @@ class Job:
                 self.reporter.warning(chosen.warning)
         return self._chosen[camera.exposure]
 
+    def origin_of(self, picture: Picture) -> Place:
+        """Returns the origin of a picture's scene: near the first camera, which a rig shares."""
+        first, scene = self.pictures[0], self.scene_of(picture)
+        camera = settled(first.view.camera(scene), scene.time)
+        return origin_of(camera, scene.time, first.settings.film.resolution)
+
     def open(self, picture: Picture) -> Session:
         """Makes and checks the session of a picture; reports warnings of each camera once."""
         from daguerre.setup.camera_facts import UNLIT, camera_warnings, lit
@@ -171,7 +180,12 @@ class Job:
             self.reporter.warning(which + warning)
         piloted = self.piloted(picture)
         session = Session(
-            scene, camera, settings=picture.settings, built=self._built, piloted=piloted
+            scene,
+            camera,
+            settings=picture.settings,
+            built=self._built,
+            piloted=piloted,
+            origin=self.origin_of(picture),
         )
         self._built = session.built
         session.metering = metering

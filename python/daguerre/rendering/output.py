@@ -102,6 +102,12 @@ class Output:
             )
         if metadata.get("background") == PLATE:
             self._check_plate(metadata)
+        origin = metadata.get("world_origin")
+        if origin and "P" in self.aovs and any(path.suffix == ".exr" for path in self.paths):
+            tell.note(
+                f"P in the file is relative to {origin} m (daguerre:world_origin in its header): "
+                "its 32-bit numbers would be too coarse"
+            )
         if DISPARITY in self.aovs:
             from .rig import check_straight
 

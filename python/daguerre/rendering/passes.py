@@ -41,6 +41,7 @@ from daguerre.errors import InputError, MismatchError
 from daguerre.files.json_item import short
 from daguerre.files.reading import size_of
 from daguerre.files.value import BriefRecord
+from daguerre.frame.world import in_world
 from daguerre.pictures.exr.layout import Layout, read_layouts
 from daguerre.pictures.exr.parts import PartReader
 from daguerre.pictures.exr.write import Channels, channels, jsonable, write_parts
@@ -178,6 +179,7 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
             "wanted a file written by `daguerre render --samples a:b` or a checkpoint"
         )
     truth = _read_truth(parts[0]) if facts.metadata.get("gt_time") else {}
+    truth = in_world(truth, facts.metadata.get("world_origin"))
     return replace(facts, state=state, path=path, round=found, truth=truth)
 
 

@@ -29,6 +29,7 @@ def ground_truth(prepared: Prepared, region: Box, overscan: Overscan) -> GroundT
         prepared.settings.threads,
         None if prepared.scene.motion else prepared.core_scene,
         overscan,
+        prepared.built.origin,
     )
 
 

@@ -13,9 +13,11 @@ from daguerre.camera.overscan import Overscan, check_overscan
 from daguerre.camera.settled import settled
 from daguerre.checks import short
 from daguerre.errors import MismatchError, UsageError
+from daguerre.scene.far import Place
 from daguerre.scene.scene import Scene, check_moments
 from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.camera import set_up, with_brightness_of
+from daguerre.setup.origin import origin_of
 from daguerre.setup.resolved import ResolvedCamera
 
 from . import diffraction
@@ -112,6 +114,7 @@ def prepare(
     camera: Camera | str | None,
     settings: RenderSettings,
     built: BuiltScene | None = None,
+    origin: Place | None = None,
 ) -> Prepared:
     """Builds the scene and sets up the camera.
 
@@ -120,6 +123,7 @@ def prepare(
         camera: Camera, or its name in the scene; None: the scene's own.
         settings: Render settings.
         built: Scene built for another picture; reused if both expose at the same time.
+        origin: Origin of the core's scene in the world, m; None: near the camera.
     """
     if not isinstance(scene, Scene):
         raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
@@ -128,8 +132,9 @@ def prepare(
     size = settings.film.resolution
     interval = shutter.interval(camera, scene.time, size)
     check_moments(scene, *interval)
-    if built is None or not built.shows(scene, interval):
-        built = BuiltScene(scene, interval, built)
+    place = origin_of(camera, scene.time, size) if origin is None else origin
+    if built is None or not built.shows(scene, interval, place):
+        built = BuiltScene(scene, interval, built, place)
     setup = set_up(scene, camera, size, built.core)
     notes = []
     overscan = check_overscan(settings.film.overscan, size)

@@ -15,6 +15,7 @@ from daguerre.checks import number, short
 from daguerre.errors import InputError, UsageError
 from daguerre.frame.frame import Frame
 from daguerre.parameters.keywords import takes
+from daguerre.scene.far import Place
 from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.pose import moved_right
@@ -41,7 +42,8 @@ def render_rig(
     """Renders a picture for each camera; the scene is built once.
 
     All cameras use the same random numbers. So each frame is bit-identical to ``render`` with that
-    camera alone, and cameras with similar views have similar noise. Cameras with the same automatic
+    camera alone, unless it is some 1000 m from the first camera (:mod:`daguerre.setup.origin`), and
+    cameras with similar views have similar noise. Cameras with the same automatic
     exposure mode share the exposure that a meter chooses for the first of them.
 
     Args:
@@ -61,6 +63,7 @@ def render_rig(
     common = settings_of(settings, keywords)
     frames: dict[str, Frame] = {}
     built: BuiltScene | None = None
+    origin: Place | None = None
     chosen: dict[str, Chosen] = {}
     for name, given in cameras.items():
         camera = given if isinstance(given, Camera) else scene.camera(given)
@@ -72,10 +75,10 @@ def render_rig(
                 chosen[camera.exposure], built = choose(scene, camera, sized, built)
             choice = chosen[camera.exposure]
             camera = choice.of(camera)
-        session = Session(scene, camera, settings=sized, built=built)
+        session = Session(scene, camera, settings=sized, built=built, origin=origin)
         session.metering = {} if choice is None else choice.facts
         frames[name] = finish(session)
-        built = session.built
+        built, origin = session.built, session.built.origin
     return frames
 
 

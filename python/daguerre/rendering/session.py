@@ -59,6 +59,8 @@ class Session:
             both expose at the same time.
         piloted: ``light_plan.piloted`` of another session of the same picture; default: a pilot
             render finds how many light paths pay off, if their number is ``"auto"``.
+        origin: Origin of the core's scene in the world, m, which pictures of a rig share; default:
+            near the camera.
         {keywords}
 
     Raises:
@@ -75,6 +77,7 @@ class Session:
         settings: RenderSettings | None = None,
         built: BuiltScene | None = None,
         piloted: tuple[float, float] | None = None,
+        origin: tuple[float, float, float] | None = None,
         **keywords: Unpack[SettingsKeywords],
     ) -> None:
         self.settings = settings_of(settings, keywords)
@@ -87,7 +90,7 @@ class Session:
             chosen, built = choose(scene, camera, self.settings, built)
             camera, self.metering = chosen.of(camera), chosen.facts
             metered = [text for text in (chosen.note, chosen.warning) if text]
-        self.prepared = prepared = prepare(scene, camera, self.settings, built)
+        self.prepared = prepared = prepare(scene, camera, self.settings, built, origin)
         self.light_plan = plan_light(prepared, piloted)
         self.scene, self.camera, self.built = prepared.scene, prepared.camera, prepared.built
         self.width, self.height = prepared.size

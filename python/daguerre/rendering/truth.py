@@ -20,6 +20,8 @@ from daguerre.camera.overscan import NONE, Overscan
 from daguerre.camera.settled import settled
 from daguerre.errors import InputError, core_errors
 from daguerre.frame.aovs import MEANS_CHANNELS, TRUTH_CHANNELS, Aov, Source, made_by
+from daguerre.frame.world import in_world
+from daguerre.scene.far import ZERO, Place
 from daguerre.scene.scene import Scene
 from daguerre.setup.camera import set_up
 from daguerre.setup.resolved import ResolvedCamera
@@ -65,6 +67,7 @@ class GroundTruth:
         threads: Number of threads; 0: all cores.
         core_scene: Built scene for reuse, if nothing moves.
         overscan: Extra pixels around the picture that the crop may include.
+        origin: Origin of the core's scene in the world, m; that of ``core_scene``, if it is given.
     """
 
     scene: Scene
@@ -77,6 +80,7 @@ class GroundTruth:
     threads: int = 0
     core_scene: _core.Scene | None = None
     overscan: Overscan = NONE
+    origin: Place = ZERO
 
     @core_errors(InputError, "render")
     def planes(self, *, motion: bool) -> dict[str, NDArray[Any]]:
@@ -92,6 +96,7 @@ class GroundTruth:
             return self._means(now, motion=motion)
         seen = _core.see(*now, self.crop)
         planes = {name: np.asarray(seen.plane(name)) for name in TRUTH_CHANNELS}
+        planes = in_world(planes, self.origin)
         if not motion:
             return planes
         here = seen.places(*now)
@@ -103,6 +108,7 @@ class GroundTruth:
     def _means(self, now: Shot, *, motion: bool) -> dict[str, NDArray[Any]]:
         seen = _core.see_mean(*now, self.crop, self.gt_rays)
         planes = {name: np.asarray(seen.plane(name)) for name in MEANS_CHANNELS}
+        planes = in_world(planes, self.origin)
         for row in made_by(Source.MOTION) if motion else ():
             moved = _core.mean_motion(*now, *self._shot(row.frames), self.crop, self.gt_rays)
             planes |= _by_channel(row, moved)
@@ -129,7 +135,7 @@ class GroundTruth:
         begin = opens + GT_TIMES[self.gt_time] * exposure + frames / self.camera.fps
         begin, end = begin, begin + shutter.core_shutter(camera, self.resolution).duration_s
         scene = self.scene.at(0.5 * (begin + end))
-        core_scene = self.core_scene or build(scene, (begin, end))
+        core_scene = self.core_scene or build(scene, (begin, end), origin=self.origin)
         setup = set_up(scene, camera, self.resolution, core_scene, self.overscan)
         settings = _core.RenderSettings()
         settings.resolution = self.resolution

@@ -152,7 +152,7 @@ def layout_of(counts: object, basis: str, wrap: str, where: str) -> Layout:
 
 def balls_along(curves: Curves) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Computes balls that touch the surface along curves: centres (B, 3) and radii (B, 1), m."""
-    rows = np.column_stack([curves.positions, curves.radii]).astype(np.float64)
+    rows = np.column_stack([curves.points, curves.radii])
     starts = curves.starts.astype(np.int64)
     if not curves.cubic:
         return rows[:, :3], rows[:, 3:]

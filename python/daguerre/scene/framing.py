@@ -52,8 +52,8 @@ def bounds(scene: Scene) -> tuple[FloatArray, FloatArray] | None:
     boxes = {}
     for mesh in {instance.mesh for instance in filled}:
         points, reach = scene.meshes[mesh].positions, reach_of(scene.meshes[mesh])
-        low = points.min(axis=0).astype(float) - reach
-        high = points.max(axis=0).astype(float) + reach
+        low = points.min(axis=0).astype(float) - reach + scene.meshes[mesh].origin
+        high = points.max(axis=0).astype(float) + reach + scene.meshes[mesh].origin
         boxes[mesh] = (low + high) / 2, (high - low) / 2
     centers, halves = np.array([boxes[i.mesh] for i in filled]).swapaxes(0, 1)
     matrices = np.array([i.transform for i in filled])

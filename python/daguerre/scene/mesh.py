@@ -14,6 +14,7 @@ from daguerre.motion.values import Dynamic
 from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
 
+from .far import ZERO
 from .limits import check_coordinates
 from .parts import Mesh
 
@@ -85,7 +86,7 @@ def mesh_of(
         key: optional_array(given[key], where, key, columns, len(points))
         for key, columns in COLUMNS.items()
     }
-    return Mesh(points, triangles, **made, name=name)
+    return Mesh(points, triangles, **made, name=name, origin=ZERO)
 
 
 def _triangles(indices: ArrayLike, where: str, count: int) -> NDArray[Any]:

@@ -12,13 +12,18 @@ from daguerre.camera.camera import Camera
 from daguerre.files.array_value import ArrayValue
 from daguerre.files.value import FixedArrays, Value
 
+from .far import ZERO, Place
 from .limits import largest
 from .motion import Vertices
 
 
 @dataclass(frozen=True, eq=False)
 class Mesh(FixedArrays):
-    """Triangles of one material, in local space (m)."""
+    """Triangles of one material, in local space (m).
+
+    ``positions`` are relative to ``origin``, a point of the local space, which is 0 unless the mesh
+    came with doubles far from 0.
+    """
 
     positions: NDArray[np.float32]
     indices: NDArray[np.uint32]
@@ -28,11 +33,17 @@ class Mesh(FixedArrays):
     tangents: NDArray[np.float32] | None = None
     colors: NDArray[np.float32] | None = None
     name: str = ""
+    origin: Place = ZERO
 
     @cached_property
     def extent(self) -> float:
         """Largest coordinate at the scene's time, with the radii of curves, m."""
-        return largest(self.positions) + reach_of(self)
+        return largest(self.positions) + reach_of(self) + max(map(abs, self.origin))
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Positions in the local space, shape (N, 3), m."""
+        return self.positions.astype(np.float64) + self.origin
 
     def __repr__(self) -> str:
         return (

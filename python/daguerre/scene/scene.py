@@ -38,6 +38,7 @@ from daguerre.parameters.keywords import takes
 
 from .catcher import EFFECTS, check_effects
 from .curves import CURVES, CurveKeywords, curves_of, moving_curves
+from .far import ZERO, recentered
 from .illuminance import scale_for
 from .lights import Light, check_light
 from .limits import check_place, check_places, check_size
@@ -337,6 +338,8 @@ class Scene(Value):
         moving = _dynamic(positions) if steps is None else _steps(steps, where)
         moving_normals = _dynamic(normals)
         given |= {"normals": self._now(normals), "uv": uv}
+        still = moving is None and moving_normals is None and motion is None
+        positions, origin = recentered(positions) if still else (positions, ZERO)
         if sizes is None and subdivision is None:
             mesh = mesh_of(self._now(positions), indices, given, where, name)
         else:
@@ -357,7 +360,7 @@ class Scene(Value):
             mesh, motion = replace(mesh, **vars(cache.at(self.time))), cache
         if motion is not None:
             self.motion.meshes[len(self.meshes)] = motion
-        self.meshes.append(mesh)
+        self.meshes.append(replace(mesh, origin=origin) if any(origin) else mesh)
         return len(self.meshes) - 1
 
     @takes(CURVES, CurveKeywords)
@@ -387,12 +390,13 @@ class Scene(Value):
         where = f"curves {given['name'] or len(self.meshes)!r}"
         steps = given.pop("steps")
         path = _dynamic(points) if steps is None else _steps(steps, where)
+        points, origin = recentered(points) if path is None else (points, ZERO)
         curves, layout = curves_of(self._now(points), counts, widths, given, where)
         if path is not None:
             motion = moving_curves(path, curves, layout)
             curves = replace(curves, **vars(motion.at(self.time)))
             self.motion.meshes[len(self.meshes)] = motion
-        self.meshes.append(curves)
+        self.meshes.append(replace(curves, origin=origin) if any(origin) else curves)
         return len(self.meshes) - 1
 
     def _now(self, value: Any) -> Any:

@@ -20,6 +20,7 @@ from daguerre.camera.projection import check_resolution
 from daguerre.camera.settled import settled
 from daguerre.checks import as_readonly, short
 from daguerre.errors import UsageError
+from daguerre.scene.far import origin_near
 from daguerre.scene.scene import Scene
 
 from . import ideal, tilt
@@ -64,12 +65,13 @@ def set_up(
     begin, end = shutter.interval(camera, scene.time, resolution)
     pose = pose_over(camera, begin, end)
     world = pose.at(0.5)
+    origin = origin_near(world[:3, 3]) if core_scene is None else core_scene.origin
     changing = changes(camera, begin, end)
     now = camera.frozen_at(0.5 * (begin + end))  # facts of a camera are those at mid-exposure
     size = _picture_size(now, resolution)
     check(now, model, prescription=prescription is not None)
     focus = Focus(scene, now, resolution, size, world, core_scene)
-    framing = Framing(now, pose, focus, _film_size(size, resolution, overscan))
+    framing = Framing(now, pose.relative_to(origin), focus, _film_size(size, resolution, overscan))
     lens = _set_up_lens(framing, prescription, model)
     notes = [*lens.notes]
     if any(now.tilt) and model not in WITHOUT_IRIS:
@@ -95,6 +97,7 @@ def set_up(
         resolution=resolution,
         interval_s=(begin, end),
         world_from_camera=as_readonly(np.asarray(world, np.float64)),
+        origin=origin,
         frame_size_mm=size,
         shift_mm=now.shift,
         changes=changing,

@@ -179,7 +179,7 @@ def _world_vertices(scene: Scene, instances: list[int]) -> Iterator[NDArray[np.f
     for i in instances:
         by_mesh.setdefault(scene.instances[i].mesh, []).append(i)
     for mesh, users in by_mesh.items():
-        points = scene.meshes[mesh].positions.astype(np.float64)
+        points = scene.meshes[mesh].points
         at_once = max(1, _VERTICES_AT_ONCE // max(1, len(points)))
         for start in range(0, len(users), at_once):
             piece = np.array([scene.instances[i].transform for i in users[start : start + at_once]])

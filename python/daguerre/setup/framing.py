@@ -16,7 +16,7 @@ class Framing:
 
     Attributes:
         camera: Camera at that moment.
-        pose: World from camera while the shutter is open.
+        pose: Pose of the camera while the shutter is open, relative to the core's scene.
         focus: Finder of the focus distance.
         film_mm: Width and height of the film, centred on the frame, with overscan.
     """

@@ -19,6 +19,7 @@ from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import exposure_notes, lens_h0
 from daguerre.camera.shutter import shutter_time
 from daguerre.files.value import BriefRecord
+from daguerre.scene.far import Place
 
 from .pose import Change
 from .tilt import cosine
@@ -130,6 +131,7 @@ class ResolvedCamera(BriefRecord):
         resolution: Width and height of the picture, px.
         interval_s: Begin and end of the exposure.
         world_from_camera: Pose at mid-exposure, m, shape (4, 4).
+        origin: Origin of the core's scene in the world, m.
         frame_size_mm: Width and height of the picture on the film.
         shift_mm: Position of the picture's middle relative to the lens's axis, right and up.
         changes: Changes while the shutter is open, by the name of the parameter.
@@ -141,6 +143,7 @@ class ResolvedCamera(BriefRecord):
     resolution: tuple[int, int]
     interval_s: tuple[float, float]
     world_from_camera: NDArray[np.float64]
+    origin: Place
     frame_size_mm: tuple[float, float]
     shift_mm: tuple[float, float]
     changes: Mapping[str, Change]

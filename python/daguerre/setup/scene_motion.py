@@ -38,7 +38,7 @@ class MovingParts:
     """
 
     def __init__(self, scene: Scene, interval: tuple[float, float], notes: list[str]) -> None:
-        self._scene, self.interval, self._notes = scene, interval, notes
+        self._scene, self.interval, self.notes = scene, interval, notes
         self._corners: dict[int, FloatArray] = {}
         self._crowded: list[tuple[str, int, int]] = []
         # A part at the end of a long chain costs as much as the whole of it.
@@ -54,7 +54,7 @@ class MovingParts:
             return vertices_of(mesh)
         steps, keeps = resample_vertices(dynamic, *self.interval)
         if not keeps:
-            self._notes.append(
+            self.notes.append(
                 f"mesh {mesh.name or index!r} moves too unevenly for {MAX_STEPS} steps: "
                 f"{len(steps)} steps approximate it"
             )
@@ -111,7 +111,7 @@ class MovingParts:
         if self._crowded:
             where, many, most = self._crowded[0]
             others = len(self._crowded) - 1
-            self._notes.append(
+            self.notes.append(
                 f"{where} has {many} keys while the shutter is open; at most {most} are used"
                 + (f" ({others} others likewise)" if others else "")
             )
@@ -140,7 +140,8 @@ def corners(mesh: Mesh) -> FloatArray:
         return np.zeros((8, 3))
     reach = reach_of(mesh)
     ends = mesh.positions.min(axis=0) - reach, mesh.positions.max(axis=0) + reach
-    return np.array([[ends[k[i]][i] for i in range(3)] for k in product((0, 1), repeat=3)], float)
+    found = [[ends[k[i]][i] for i in range(3)] for k in product((0, 1), repeat=3)]
+    return np.array(found, float) + mesh.origin
 
 
 def _where(instance: Instance, index: int) -> str:

@@ -17,9 +17,11 @@ from daguerre.rendering.photograph import Photograph
 from daguerre.rendering.prepare import Prepared, prepare
 from daguerre.rendering.session import Session
 from daguerre.rendering.settings import RenderSettings
+from daguerre.scene.far import Place
 from daguerre.scene.scene import Scene
 from daguerre.sensors import Sensor
 from daguerre.setup.built_scene import BuiltScene
+from daguerre.setup.origin import is_near
 from daguerre.setup.resolved import ResolvedLens
 
 from .dials import Dials
@@ -131,9 +133,20 @@ class Stage:
         self.built = session.built
         check_light(self._prepared(shot))
 
+    def origin(self, shot: Shot) -> Place | None:
+        """Origin of the built scene, while the camera is near it; None: near the camera.
+
+        A camera that crosses the edge of a cell again and again builds the scene once.
+        """
+        place = shot.camera.transform[:3, 3]
+        if self.built is None or not is_near(self.built.origin, place):
+            return None
+        return self.built.origin
+
     def _prepared(self, shot: Shot) -> Prepared:
         with core_errors(InputError, "render"):
-            one = prepare(shot.scene, shot.camera, shot.settings, self.built)
+            origin = self.origin(shot)
+            one = prepare(shot.scene, shot.camera, shot.settings, self.built, origin)
         self.built = one.built
         return one
 

@@ -87,7 +87,7 @@ class Work:
 
         def make() -> tuple[Rung, list[Session], list[Layer | None]]:
             rung = rung_of(request, index)
-            sessions = [_session(request.stage, shot) for shot in rung.shots]
+            sessions = [_session(request.stage, shot, rung.last) for shot in rung.shots]
             return rung, sessions, self._layers_of(rung, request.stage)
 
         rung, sessions, layers = do(make)
@@ -143,9 +143,15 @@ def _with_ghosts(frame: Frame, layer: Layer | None) -> View:
     return (frame, None) if layer is None else (layer.added(frame), layer.sharp(frame))
 
 
-def _session(stage: Stage, shot: Shot) -> Session:
-    """Session of a shot; keeps the built scene for the next shot."""
-    session = Session(shot.scene, shot.camera, settings=shot.settings, built=stage.built)
+def _session(stage: Stage, shot: Shot, last: bool = False) -> Session:
+    """Session of a shot, maybe of the last rung; keeps the built scene for the next shot."""
+    session = Session(
+        shot.scene,
+        shot.camera,
+        settings=shot.settings,
+        built=stage.built,
+        origin=None if last else stage.origin(shot),
+    )
     stage.built = session.built
     session.metering = _metering(shot)
     return session

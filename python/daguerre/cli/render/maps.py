@@ -27,16 +27,14 @@ def write_maps(plan: Plan, job: Job) -> bool:
 def _write(plan: Plan, job: Job, picture: Picture) -> None:
     """Writes the maps of a camera, and finds its focus if needed."""
     from daguerre.camera.overscan import check_overscan
-    from daguerre.camera.shutter import interval
     from daguerre.distortion.overscan import note, to_undistort
-    from daguerre.distortion.rectified import RectifiedView
+    from daguerre.distortion.rectified import RectifiedView, built
     from daguerre.rendering.truth import focused
     from daguerre.setup.camera import set_up
-    from daguerre.setup.scene import build
 
     scene, camera = job.scene_of(picture), job.camera_of(picture)
     size = picture.settings.film.resolution
-    setup = set_up(scene, camera, size, build(scene, interval(camera, scene.time, size)))
+    setup = set_up(scene, camera, size, built(scene, camera, size))
     camera = focused(camera, setup.lens.focus_distance_m)
     overscan = check_overscan(picture.settings.film.overscan, size, "--overscan")
     if overscan is None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
 from daguerre.files.value import FixedArrays
+from daguerre.scene.far import single_if_near
 from daguerre.scene.polygons import weld
 from daguerre.scene.scene import Scene
 
@@ -22,7 +23,8 @@ class FileMesh(FixedArrays):
     """Polygons of a file.
 
     Attributes:
-        positions: Shape (N, 3), in the units of the file.
+        positions: Shape (N, 3), in the units of the file; doubles if single precision would move
+            them (:mod:`daguerre.scene.far`).
         corners: Vertex of each corner, face after face, shape (C,).
         sizes: Corners of each face, at least 3, shape (F,); None: all are triangles.
         normals: Shape (N, 3), or None.
@@ -32,7 +34,7 @@ class FileMesh(FixedArrays):
         name: Name in the file.
     """
 
-    positions: Floats
+    positions: NDArray[np.floating]
     corners: NDArray[np.uint32]
     sizes: NDArray[np.uint32] | None = None
     normals: Floats | None = None
@@ -103,6 +105,17 @@ def check_corners(corners: NDArray[Any], vertices: int, where: str) -> NDArray[n
     raise InputError(
         f"{where}: corner {bad}: wanted a vertex of 0 .. {vertices - 1}, got {corners[bad]}"
     )
+
+
+def checked_positions(values: NDArray[np.floating], where: str, what: str) -> NDArray[np.floating]:
+    """Positions of a file, read-only: in single precision, unless it would move them.
+
+    Raises:
+        InputError: A number is not finite in single precision.
+    """
+    found = single_if_near(values)
+    check_finite(found, where, what)
+    return freeze_in_place(found)
 
 
 def check_finite(values: NDArray[Any], where: str, what: str) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from daguerre.checks import freeze_in_place, short
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.importers.file_bytes import Bytes, read_bytes
+from daguerre.scene.far import single_if_near
 from daguerre.scene.polygons import weld
 
 from .file_mesh import FileMesh, Floats, check_finite
@@ -62,8 +64,8 @@ def _check_text(data: Bytes, where: str) -> None:
     raise InputError(f"{where}: line {line}: wanted text, got a zero byte")
 
 
-def _table(lines: Lines, word: str, where: str) -> Floats:
-    """Numbers of the lines of a keyword, shape (N, K)."""
+def _table(lines: Lines, word: str, where: str) -> Any:
+    """Numbers of the lines of a keyword, shape (N, K); doubles only for positions far from 0."""
     columns, least = _TABLES[word]
     chosen = lines.of(word)
     text = lines.bytes(chosen)
@@ -80,12 +82,13 @@ def _table(lines: Lines, word: str, where: str) -> Floats:
             f"{where}: line {chosen[error.line] + 1}: {word}: wanted {error.wanted}, "
             f"got {error.word}"
         ) from None
-    rows = np.zeros((len(counts), columns), np.float32)
+    rows: Any = np.zeros((len(counts), columns), np.float64 if word == "v" else np.float32)
     begins = np.cumsum(counts) - counts
     with np.errstate(over="ignore"):
         for k in range(columns):
             has = counts > k
             rows[has, k] = flat[begins[has] + k]
+    rows = single_if_near(rows)
     try:
         check_finite(rows, where, word)
     except InputError:

@@ -23,7 +23,14 @@ from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.importers.file_bytes import Bytes, read_bytes
 
-from .file_mesh import FileMesh, Floats, check_corners, check_finite, with_corner_uv
+from .file_mesh import (
+    FileMesh,
+    Floats,
+    check_corners,
+    check_finite,
+    checked_positions,
+    with_corner_uv,
+)
 from .ply_header import Element, Header, Property, read_header
 from .ply_rows import Lists, Rows
 from .text_numbers import NotANumberError, numbers
@@ -99,9 +106,9 @@ def _of_doubles(element: Element) -> Element:
 
 def _vertices(element: Element, rows: Rows, where: str, notes: Notes) -> FileMesh:
     """Vertices with their values, without faces."""
-    positions = _values(element, rows, _POSITION, where)
-    if positions is None:
+    if not _has(element, _POSITION):
         raise InputError(f"{where}: the properties x, y and z are missing")
+    positions = checked_positions(rows.positions(_POSITION), where, _POSITION[0])
     uv = next((names for names in _UV if _has(element, names)), ())
     colored = next((names for names in _COLORS if _has(element, names)), ())
     used = {*_POSITION, *_NORMAL, *uv, *colored}

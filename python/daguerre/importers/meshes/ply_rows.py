@@ -68,7 +68,15 @@ class Rows:
 
     def numbers(self, names: Sequence[str]) -> Floats:
         """Columns of numbers in single precision, shape (F, K)."""
-        out = np.empty((self._element.count, len(names)), np.float32)
+        return np.asarray(self._columns(names, np.float32))
+
+    def positions(self, names: Sequence[str]) -> NDArray[np.floating]:
+        """Columns of numbers, shape (F, K), in double precision if the file has one of them so."""
+        double = any(self._element.properties[self._number(name)].type == "f8" for name in names)
+        return self._columns(names, np.float64 if double else np.float32)
+
+    def _columns(self, names: Sequence[str], kind: type[np.floating]) -> NDArray[np.floating]:
+        out = np.empty((self._element.count, len(names)), kind)
         if self._lists:
             with np.errstate(over="ignore", invalid="ignore"):
                 for column, name in enumerate(names):

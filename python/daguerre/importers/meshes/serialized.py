@@ -17,7 +17,7 @@ from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
 from daguerre.importers.file_bytes import Bytes, Inflated, read_bytes
 
-from .file_mesh import FileMesh, Floats, check_corners, check_finite
+from .file_mesh import FileMesh, Floats, check_corners, check_finite, checked_positions
 
 _FORMAT, _VERSIONS = 0x041C, (3, 4)
 _HEAD = 4
@@ -134,7 +134,7 @@ def _mesh(stream: _Stream, version: int, where: str) -> FileMesh:
     name = stream.name() if version == 4 else ""
     vertices, faces = stream.count("vertices"), stream.count("triangles")
     kind = "<f8" if flags & _DOUBLE else "<f4"
-    positions = _single(stream.numbers(kind, vertices, 3), where, "position")
+    positions = checked_positions(stream.numbers(kind, vertices, 3), where, "position")
     values: list[Floats | None] = [
         _single(stream.numbers(kind, vertices, columns), where, what) if flags & flag else None
         for flag, (what, columns) in _ATTRIBUTES.items()

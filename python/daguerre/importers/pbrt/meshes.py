@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import freeze_in_place
+from daguerre.scene.far import single_if_near
 from daguerre.scene.scene import Scene
 from daguerre.scene.subdivision import Subdivision
 
@@ -142,7 +143,7 @@ class Meshes:
             made.place.fail(f"too many triangles of shapes: the limit is {MAX_TRIANGLES}")
 
     def _add(self, surface: LocalMesh, uv1: NDArray[np.float32] | None) -> int:
-        positions = freeze_in_place(np.ascontiguousarray(surface.positions, np.float32))
+        positions = freeze_in_place(np.ascontiguousarray(single_if_near(surface.positions)))
         triangles = freeze_in_place(np.ascontiguousarray(surface.triangles, np.uint32))
         if surface.level:
             return self._scene.add_mesh(

@@ -111,6 +111,10 @@ def _is_balance(value: object) -> bool:
     return value is not None
 
 
+def _is_place(value: object) -> bool:
+    return isinstance(value, list) and len(value) == 3 and all(map(is_number, value))
+
+
 def _is_object(value: object) -> bool:
     return isinstance(value, dict)
 
@@ -123,6 +127,7 @@ _JSON: dict[str, Callable[[Any], bool]] = {
     **dict.fromkeys((*exr.OWN_JSON, "camera"), _is_there),
     "bad_sample_places": _are_places,
     "sensor_channels": are_texts,
+    "world_origin": _is_place,
     "white_balance": _is_balance,
     "camera": _is_object,
 }

@@ -20,6 +20,7 @@ from daguerre.errors import InputError
 from daguerre.files.json_item import clean
 from daguerre.frame.cryptomatte import taken
 from daguerre.frame.frame import Frame
+from daguerre.frame.world import in_world
 from daguerre.pictures.stated_colors import of_exr
 
 from .color_space import Converter, in_rec709
@@ -70,7 +71,7 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
         catcher_ratio_channels=_group(planes, [f"catcher_ratio_sensor.{name}" for name in names]),
         cryptomatte=taken(planes, facts, str(path)),
     )
-    frame.aovs = planes
+    frame.aovs = in_world(planes, metadata.get("world_origin"))
     count = metadata.get("bad_samples", 0)
     places = metadata.get("bad_sample_places", [])
     frame.bad_samples = (

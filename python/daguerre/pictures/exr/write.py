@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from daguerre.errors import OutputError
 from daguerre.files.atomic import atomic_path
 from daguerre.frame import cryptomatte
+from daguerre.frame.world import relative
 
 from . import color_space
 from .threads import threads
@@ -49,7 +50,7 @@ OWN_STRINGS = (
     "diffraction", "sensor", "sensor_hash", "sensor_from", "overscan", "background",
     "colorspace",
 )  # fmt: skip
-OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance", "plate")
+OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance", "plate", "world_origin")
 
 Channels = Mapping[str, NDArray[np.float32] | NDArray[np.uint32]]
 
@@ -98,7 +99,7 @@ def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]
     """
     planes: dict[str, NDArray[np.float32] | NDArray[np.uint32]] = {"RGB": frame.rgb}
     planes["A"] = frame.alpha
-    planes |= frame.aovs
+    planes |= relative(frame.aovs, frame.metadata.get("world_origin"))
     if frame.channels is not None:
         names = frame.metadata["sensor_channels"]
         planes |= _per_channel("sensor", frame.channels, names)

@@ -92,6 +92,8 @@ def _known(motion: object, where: str) -> Any:
 
 def _mesh(mesh: Mesh, motion: object) -> dict[str, Any]:
     found = {"name": mesh.name, **{name: getattr(mesh, name) for name in ARRAYS}}
+    if any(mesh.origin):
+        found["origin"] = mesh.origin
     if isinstance(mesh, Curves):
         found["curves"] = {name: getattr(mesh, name) for name in OF_CURVES}
     if motion is None:

@@ -129,9 +129,15 @@ class Rebuild:
             self._curves(given["curves"], arrays, name, where)
             if motion is not None:
                 self._move_curves(motion, where)
-            return
-        moving = None if motion is None else self._moving(motion, arrays, name, where)
-        self.scene.add_mesh(**arrays, name=name, motion=moving)  # type: ignore[arg-type]
+        else:
+            moving = None if motion is None else self._moving(motion, arrays, name, where)
+            self.scene.add_mesh(**arrays, name=name, motion=moving)  # type: ignore[arg-type]
+        if "origin" in given:
+            origin = given["origin"]
+            if not isinstance(origin, tuple) or len(origin) != 3:
+                raise InputError(f"{where}: origin: wanted three numbers, got {short(origin)}")
+            x, y, z = (number(one, f"{where}: origin") for one in origin)
+            self.scene.meshes[-1] = replace(self.scene.meshes[-1], origin=(x, y, z))
 
     def _moving(self, given: object, arrays: Mapping[str, Any], name: str, where: str) -> Dynamic:
         """Vertices of a mesh over time."""
