@@ -213,15 +213,18 @@ class _Seen:
         )
         pitch_um = 1e3 * self.camera.sensor_size[0] / self.size[0]
         return ProjectionFit(
-            *(made, self.bench, pitch_um, self.pixels, self.directions, self.unseen, self.camera)
+            made, self.bench, pitch_um, self.pixels, self.directions, self.unseen, self.camera
         )
 
 
 def _see(lens: Lens | str, asked: dict[str, Any]) -> _Seen:
     """Traces chief rays, with the parameters in ``SEEN``."""
-    picture = _Picture(*(asked[n] for n in ("resolution", "sensor_size", "shift", "wavelength_nm")))
-    names = ("f_stop", "focus_distance", "focal_length", "focus_by")
-    setting = LensSetting(*(asked[name] for name in names))
+    picture = _Picture(
+        asked["resolution"], asked["sensor_size"], asked["shift"], asked["wavelength_nm"]
+    )
+    setting = LensSetting(
+        asked["f_stop"], asked["focus_distance"], asked["focal_length"], asked["focus_by"]
+    )
     item = load(lens)
     bench = on_bench(item, setting)
     size, pitch, axis = picture.size, picture.pitch_mm, picture.axis

@@ -21,7 +21,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cache
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,6 +108,18 @@ class PlainPupil:
         return self.iris.amplitude(x[None, :] * unit, y[:, None] * unit, pitch)
 
 
+class _Weights(NamedTuple):
+    """Weights of samples in the integrals over N pixels along an axis.
+
+    Attributes:
+        first: First sample of each integral, shape (N,).
+        values: Weights from that sample on, shape (N, K).
+    """
+
+    first: NDArray[np.int32]
+    values: Floats
+
+
 @dataclass(frozen=True)
 class Pattern:
     """Samples of the light around a film point, with distances in wavelengths.
@@ -139,12 +151,16 @@ class Pattern:
         edges = (np.arange(size + 1, dtype=np.float64) - 0.5 * size) * pixel
         down = _weights(edges + reach, self.total)
         if not self.halved:
-            return np.asarray(pixel_integrals(self.light, *down, *_weights(edges + reach, 1.0)))
+            return self._integrals(down, _weights(edges + reach, 1.0))
         # The middle column is its own right half, plus that half turned about the point.
         right = np.concatenate([[0.0], edges[size // 2 + 1 :]]) + TAPS
-        half = pixel_integrals(self.light, *down, *_weights(right, 1.0))
+        half = self._integrals(down, _weights(right, 1.0))
         half[:, 0] += half[::-1, 0]
-        return np.asarray(half)
+        return half
+
+    def _integrals(self, down: _Weights, across: _Weights) -> Floats:
+        found = pixel_integrals(self.light, down.first, down.values, across.first, across.values)
+        return np.asarray(found)
 
 
 def both_halves(right: Floats) -> Floats:
@@ -228,17 +244,15 @@ def far_fields(
     if size == 1:
         yield from (np.ones((1, 1), np.float32) for _ in wavelengths_nm)  # half is all
         return
-    raster = pitch_mm, size
-
     count = thread_count(threads)
     shared = None
     if pupil.perfect:
-        shared = pattern_of(pupil, min(wavelengths_nm), *raster, threads=count)
+        shared = pattern_of(pupil, min(wavelengths_nm), pitch_mm, size, threads=count)
 
     def one(nm: float) -> Floats:
-        pattern = shared if pupil.perfect else pattern_of(pupil, nm, *raster)
+        pattern = shared if pupil.perfect else pattern_of(pupil, nm, pitch_mm, size)
         dark = np.zeros((size, size // 2 + 1 if pupil.perfect else size), np.float32)
-        return dark if pattern is None else pattern.on_pixels(nm, *raster)
+        return dark if pattern is None else pattern.on_pixels(nm, pitch_mm, size)
 
     with ThreadPoolExecutor(count) as pool:
         for first in range(0, len(wavelengths_nm), count):
@@ -300,7 +314,7 @@ def _intensity(
     return out
 
 
-def _weights(edges: NDArray[np.float64], total: float) -> tuple[NDArray[np.int32], Floats]:
+def _weights(edges: NDArray[np.float64], total: float) -> _Weights:
     """Weights of samples in the integrals between edges (counted in samples), over a total.
 
     A windowed sinc interpolates between samples; at three samples per fringe it misses about 1e-3
@@ -312,7 +326,7 @@ def _weights(edges: NDArray[np.float64], total: float) -> tuple[NDArray[np.int32
     taps = int(np.ceil((high - low).max())) + 2 * TAPS
     at = first[:, None] + np.arange(taps)
     weights = (_risen(high[:, None] - at) - _risen(low[:, None] - at)) / total
-    return first, np.ascontiguousarray(weights, np.float32)
+    return _Weights(first, np.ascontiguousarray(weights, np.float32))
 
 
 def _risen(x: NDArray[np.float64]) -> NDArray[np.float64]:

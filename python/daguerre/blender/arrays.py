@@ -41,7 +41,8 @@ def attribute(geometry: bpy.types.Mesh | bpy.types.Curves, name: str) -> NDArray
     found = geometry.attributes.get(name)
     if found is None or found.data_type not in _KINDS:
         return None
-    return read(found.data, *_KINDS[found.data_type])
+    member, columns, kind = _KINDS[found.data_type]
+    return read(found.data, member, columns, kind)
 
 
 def points_of(geometry: bpy.types.Mesh | bpy.types.Curves) -> NDArray[np.float32]:

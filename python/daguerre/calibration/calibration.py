@@ -106,18 +106,29 @@ def delayed(camera: Camera, seconds: float) -> Camera:
     return camera.with_(shutter_offset=(opens + seconds) * camera.fps)
 
 
-def projection(where: str, *values: Any) -> Projection:
+def projection(
+    where: str,
+    model: str,
+    size: tuple[int, int],
+    focal: tuple[float, float],
+    center: tuple[float, float],
+    parameters: tuple[float, ...],
+) -> Projection:
     """Makes a projection from a file's values, and checks that it is valid all over its picture.
 
     Args:
         where: File, and place in it, for messages.
-        values: Arguments of ``Projection``.
+        model: Name of the model.
+        size: Width and height, px.
+        focal: Focal lengths, px.
+        center: Principal point, px.
+        parameters: Parameters of the model.
 
     Raises:
         InputError: The values are invalid, or the model folds within its picture.
     """
     try:
-        made = Projection(*values)
+        made = Projection(model, size, focal, center, parameters)
     except UsageError as error:
         raise InputError(f"{where}: {error}") from None
     check_field(made, where)

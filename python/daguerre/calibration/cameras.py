@@ -41,7 +41,8 @@ class CalibratedCameras:
     ) -> Camera:
         """Makes a camera from an OpenCV calibration."""
         found = read(
-            *(calibration, name),
+            calibration,
+            name,
             format="opencv",
             model=model,
             size=size,

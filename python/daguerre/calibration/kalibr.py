@@ -75,7 +75,9 @@ def read_kalibr(source: Source) -> dict[str, Calibration]:
             camera_from_first = _from_before(item, before, notes) @ camera_from_first
         stands = FLIP @ np.linalg.inv(camera_from_first) @ FLIP
         found[name] = Calibration(
-            *(_projection(item), name, stands if i else np.eye(4)),
+            _projection(item),
+            name,
+            stands if i else np.eye(4),
             notes=tuple(notes),
             delay_s=shifts[i] - shifts[0],
         )

@@ -56,22 +56,16 @@ def read_opentrackio(source: Source, *, size: tuple[int, int] | None = None) -> 
     pixels = agreed(still, "activeSensorResolution", _resolution(still), size)
     named = "pinholeFocalLength" if lens.get("focalLength") is None else "focalLength"
     focal = lens.need(named).number(above=0)
-    scale = pixels[0] / film[0], pixels[1] / film[1]  # px per mm
+    across, down = pixels[0] / film[0], pixels[1] / film[1]  # px per mm
     offset = _offset(lens, "projectionOffset")
     moved = lens.get("distortionOffset")
     if moved is not None and any(_offset(lens, "distortionOffset")):
         moved.fail("must be (0, 0), the centre of the projection")
     model, values = _distortion(lens, focal)
-    made = projection(
-        root.file,
-        model,
-        pixels,
-        tuple(focal * s for s in scale),
-        tuple((n - 1) / 2 + o * s for n, o, s in zip(pixels, offset, scale, strict=True)),
-        values,
-    )
+    center = (pixels[0] - 1) / 2 + offset[0] * across, (pixels[1] - 1) / 2 + offset[1] * down
+    made = projection(root.file, model, pixels, (focal * across, focal * down), center, values)
     settings = _settings(lens) | _pose(root, lens)
-    return Calibration(made, "", np.eye(4), 1e3 / scale[0], settings)
+    return Calibration(made, "", np.eye(4), 1e3 / across, settings)
 
 
 def _resolution(still: Item) -> tuple[int, int] | None:

@@ -184,7 +184,7 @@ class Projection(Value):
         focal, center = mix(self.focal, other.focal), mix(self.center, other.center)
         parameters = mix(self.parameters, other.parameters)
         return Projection(
-            *(self.model, self.size, (focal[0], focal[1]), (center[0], center[1]), parameters)
+            self.model, self.size, (focal[0], focal[1]), (center[0], center[1]), parameters
         )
 
     def project(self, points: ArrayLike) -> FloatArray:

@@ -54,10 +54,10 @@ class Spread:
         if self.job is None:
             self.pool.drop_all()  # of a picture before that was stopped
             self._homes.clear()
-            shown = session.scene, session.camera, session.settings
-            fixed = session.light_plan.piloted, session.built.origin
-            self._places = {0: self._kept(*shown, *fixed)}
-            return self._places[0]
+            piloted, origin = session.light_plan.piloted, session.built.origin
+            place = self._kept(session.scene, session.camera, session.settings, piloted, origin)
+            self._places = {0: place}
+            return place
         self._now = self.job.done
         for number in [n for n in self._places if n < self._now]:
             for name in astuple(self._places.pop(number)):
@@ -159,9 +159,10 @@ class Spread:
         if number not in self._places:
             assert self.job is not None
             picture, job = self.job.pictures[number], self.job
-            shown = job.scene_of(picture), job.camera_of(picture), picture.settings
+            scene, camera = job.scene_of(picture), job.camera_of(picture)
             piloted = None if session is None else session.light_plan.piloted
-            self._places[number] = self._kept(*shown, piloted, job.origin_of(picture))
+            origin = job.origin_of(picture)
+            self._places[number] = self._kept(scene, camera, picture.settings, piloted, origin)
         return self._places[number]
 
     def _kept(

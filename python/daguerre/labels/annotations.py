@@ -155,8 +155,13 @@ class _Seen:
     ) -> None:
         x0, y0, x1, y1 = truth.crop
         self.corner, self.size = np.array([x0, y0]), np.array([x1 - x0, y1 - y0])
-        self.pixels, boxes = _core.silhouettes(*moment.shot, truth.crop, groups, count)
-        self.outlines, self.open = _core.outlines(*moment.shot, groups, count)
+        shot = moment.shot
+        self.pixels, boxes = _core.silhouettes(
+            shot.scene, shot.camera, shot.settings, truth.crop, groups, count
+        )
+        self.outlines, self.open = _core.outlines(
+            shot.scene, shot.camera, shot.settings, groups, count
+        )
         self.silhouettes = np.asarray(boxes, np.float64)
         with_none = np.concatenate([[NO_GROUP], groups]).astype(np.uint32)
         self.labels = (with_none[ids] + np.uint32(1)).astype(np.int32)  # 2^32 - 1 becomes 0

@@ -50,9 +50,10 @@ def focusing(lens: Lens) -> Focusing:
         gaps = tuple(sorted({i for step in path.changes for i, mm in step.items() if mm}))
     fitted = path is not None and (path.fitted or len(path.changes) > path.printed)
     try:
-        return Focusing(gaps, fitted, *closest(lens))
+        distance_m, magnification = closest(lens)
     except LensError:
         return Focusing(gaps, fitted, None, None)
+    return Focusing(gaps, fitted, distance_m, magnification)
 
 
 def closest(lens: Lens, least_m: float = 0.0) -> tuple[float, float]:

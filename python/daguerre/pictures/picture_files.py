@@ -157,7 +157,7 @@ def _png_with(data: bytes, block: bytes, space: str) -> bytes:
     kept = [(c.kind, c.data) for c in rest if c.kind not in (b"eXIf", b"cICP")]
     all_ = [(head.kind, head.data), (b"cICP", cicp), (b"eXIf", block), *kept]
     start = data[: png_chunks.SIGNATURE_BYTES]
-    return start + b"".join(png_chunks.encoded(*chunk) for chunk in all_)
+    return start + b"".join(png_chunks.encoded(kind, data) for kind, data in all_)
 
 
 def _write_tiff(temp: Path, numbers: NDArray[Any], space: str, metadata: Mapping[str, Any]) -> None:

@@ -73,7 +73,7 @@ def write_tiff(target: Path | IO[bytes], images: list[TiffImage], exposure: Tags
                 photometric="minisblack" if image.grey_raw else image.photometric,
                 subfiletype=int(image.reduced),
                 subifds=len(images) - 1 if k == 0 and len(images) > 1 else None,
-                extratags=[_extra(number, *tag) for number, tag in sorted(tags.items())],
+                extratags=[_extra(n, kind, value) for n, (kind, value) in sorted(tags.items())],
                 metadata=None,
                 software=False,
             )

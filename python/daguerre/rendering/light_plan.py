@@ -243,10 +243,11 @@ def _settings(
 def _options(settings: RenderSettings) -> dict[str, Any]:
     """Settings of the core, by name."""
     light, reference = settings.light, settings.reference
+    name, radius = parse_filter(settings.sampling.filter)
     return {
         "seed": settings.sampling.seed,
         "threads": settings.threads,
-        "filter": _core.Filter(*parse_filter(settings.sampling.filter)),
+        "filter": _core.Filter(name, radius),
         "max_depth": light.max_depth,
         "transparent": settings.backdrop.background != ENVIRONMENT,
         "see_through": settings.backdrop.see_through,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from daguerre.camera.exposure_mode import split_pattern
 from daguerre.errors import DaguerreError
@@ -17,10 +17,20 @@ if TYPE_CHECKING:
     from .session import Session
 
 
-def metered_part(
-    session: Session, size: tuple[int, int] | None = None
-) -> tuple[str, tuple[float, float] | None]:
-    """Metering pattern of a picture, and the point that it looks at, px; None: the middle.
+class MeteredPart(NamedTuple):
+    """Part of a picture that a meter looks at.
+
+    Attributes:
+        pattern: Metering pattern.
+        at: Point that it looks at, px; None: the middle.
+    """
+
+    pattern: str
+    at: tuple[float, float] | None
+
+
+def metered_part(session: Session, size: tuple[int, int] | None = None) -> MeteredPart:
+    """Returns the part of a picture that its meter looks at.
 
     Args:
         session: Session that drew it.
@@ -30,7 +40,8 @@ def metered_part(
         DaguerreError: The spot is not in the picture.
     """
     pattern = session.metering.get("metering") or session.camera.meter
-    return split_pattern(pattern)[0], metered_point(session.prepared, pattern, size)
+    at = metered_point(session.prepared, pattern, size)
+    return MeteredPart(split_pattern(pattern)[0], at)
 
 
 def exposure_in_words(session: Session, frame: Frame) -> str:
@@ -44,7 +55,8 @@ def exposure_in_words(session: Session, frame: Frame) -> str:
     if not mode:
         return ""
     try:
-        stops = stops_over(frame, *metered_part(session))
+        part = metered_part(session)
+        stops = stops_over(frame, part.pattern, part.at)
     except DaguerreError:  # such as a spot out of view, or a frozen shutter
         return mode
     whole = session.crop == (0, 0, session.width, session.height)

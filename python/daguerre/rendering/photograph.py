@@ -172,7 +172,8 @@ class Photograph:
         """
         if not self.develops(frame.metadata):
             return frame.display(tone)
-        return self._developed(*self._exposed(frame, 0.0, raw=False)).bytes8()
+        exposed, raw = self._exposed(frame, 0.0, raw=False)
+        return self._developed(exposed, raw).bytes8()
 
     def _finished(self, picture: Picture) -> Picture:
         return picture if self.like is None else self.like.finished(picture, self.seed)

@@ -8,7 +8,7 @@ docs/ground-truth.md.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,6 @@ from daguerre.setup.camera import set_up
 from daguerre.setup.resolved import ResolvedCamera
 from daguerre.setup.scene import build
 
-Shot = tuple[_core.Scene, _core.Camera, _core.RenderSettings]
 #: Moments of the exposure of a pixel, as fractions of its length.
 GT_TIMES = {"open": 0.0, "mid": 0.5, "close": 1.0}
 #: Rays of a pixel: the chief ray of its centre, or a mean over all rays that expose it.
@@ -37,12 +36,20 @@ GT_RAYS = 64
 MAX_RAYS = 65536
 
 
+class Shot(NamedTuple):
+    """A picture as the core takes it."""
+
+    scene: _core.Scene
+    camera: _core.Camera
+    settings: _core.RenderSettings
+
+
 @dataclass(frozen=True)
 class Moment:
     """Scene and camera at a moment of ground truth.
 
     Attributes:
-        shot: Shot of the core.
+        shot: The moment as the core takes it.
         scene: Scene at that moment; with a rolling shutter, at the moment of the middle line.
         setup: Camera at that moment, like the scene.
     """
@@ -94,33 +101,43 @@ class GroundTruth:
         now = self._shot(0)
         if self.gt_lens == "mean":
             return self._means(now, motion=motion)
-        seen = _core.see(*now, self.crop)
+        seen = _core.see(now.scene, now.camera, now.settings, self.crop)
         planes = {name: np.asarray(seen.plane(name)) for name in TRUTH_CHANNELS}
         planes = in_world(planes, self.origin)
         if not motion:
             return planes
-        here = seen.places(*now)
+        here = seen.places(now.scene, now.camera, now.settings)
         for row in made_by(Source.MOTION):
-            moved = seen.places(*self._shot(row.frames)) - here
-            planes |= _by_channel(row, moved)
+            then = self._shot(row.frames)
+            places = seen.places(then.scene, then.camera, then.settings)
+            planes |= _by_channel(row, places - here)
         return planes
 
     def _means(self, now: Shot, *, motion: bool) -> dict[str, NDArray[Any]]:
-        seen = _core.see_mean(*now, self.crop, self.gt_rays)
+        seen = self._see_mean(now)
         planes = {name: np.asarray(seen.plane(name)) for name in MEANS_CHANNELS}
         planes = in_world(planes, self.origin)
         for row in made_by(Source.MOTION) if motion else ():
-            moved = _core.mean_motion(*now, *self._shot(row.frames), self.crop, self.gt_rays)
+            then = self._shot(row.frames)
+            moved = _core.mean_motion(
+                now.scene, now.camera, now.settings,
+                then.scene, then.camera, then.settings,
+                self.crop, self.gt_rays,
+            )  # fmt: skip
             planes |= _by_channel(row, moved)
         return planes
+
+    def _see_mean(self, shot: Shot) -> _core.MeanTruth:
+        return _core.see_mean(shot.scene, shot.camera, shot.settings, self.crop, self.gt_rays)
 
     @core_errors(InputError, "render")
     def object_ids(self, moment: Moment) -> NDArray[np.uint32]:
         """Plane of object ids at ``moment(0)``, shape (H, W)."""
+        shot = moment.shot
         if self.gt_lens == "mean":
-            seen: Any = _core.see_mean(*moment.shot, self.crop, self.gt_rays)
+            seen: Any = self._see_mean(shot)
         else:
-            seen = _core.see(*moment.shot, self.crop)
+            seen = _core.see(shot.scene, shot.camera, shot.settings, self.crop)
         return np.asarray(seen.plane("object_id"))
 
     def _shot(self, frames: int) -> Shot:
@@ -144,7 +161,7 @@ class GroundTruth:
         settings.sensor_center_mm = (right, up)
         settings.shutter = shutter.core_shutter(camera, self.resolution)
         settings.threads = self.threads
-        return Moment((core_scene, setup.core, settings), scene, setup)
+        return Moment(Shot(core_scene, setup.core, settings), scene, setup)
 
 
 def _by_channel(row: Aov, values: NDArray[Any]) -> dict[str, NDArray[Any]]:

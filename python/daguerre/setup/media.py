@@ -43,7 +43,7 @@ def add_media(builder: _core.SceneBuilder, scene: Scene, notes: list[str]) -> No
             if one is medium:
                 return i
         known.append(medium)
-        return int(builder.add_medium(*_core_medium(medium)))
+        return _add_medium(builder, medium)
 
     for i, material in enumerate(scene.materials):
         invisible = isinstance(material.kind, Boundary)
@@ -61,11 +61,17 @@ def _has_light_from_infinity(scene: Scene) -> bool:
     return suns or scene.environment is not None
 
 
-def _core_medium(medium: Medium) -> tuple[Any, ...]:
+def _add_medium(builder: _core.SceneBuilder, medium: Medium) -> int:
     grid = medium.density
     density = None if grid is None else (as_readonly(grid.values), as_readonly(grid.transform))
-    values = (medium.absorption, medium.scattering, medium.emission)
-    return *(_core_color(value) for value in values), list(medium.lobes), density
+    added = builder.add_medium(
+        _core_color(medium.absorption),
+        _core_color(medium.scattering),
+        _core_color(medium.emission),
+        list(medium.lobes),
+        density,
+    )
+    return int(added)
 
 
 def _core_color(value: object) -> Any:

@@ -142,14 +142,15 @@ def _checker(first: Material, index: int) -> Callable[[Any], Material]:
 
 
 def _light_checker(kind: str) -> Callable[[Any], CoreLight]:
-    def checked(pair: tuple[Light, NDArray[np.float64]]) -> CoreLight:
-        light = _core_light(*pair)
-        if light[0] != kind:
+    def checked(placed: Any) -> CoreLight:
+        light, transform = placed
+        core = _core_light(light, transform)
+        if core[0] != kind:
             raise InputError(
-                f"light {pair[0].name!r}: kind: cannot change while the shutter is open, from "
-                f"{kind} to {light[0]}"
+                f"light {light.name!r}: kind: cannot change while the shutter is open, from "
+                f"{kind} to {core[0]}"
             )
-        return light
+        return core
 
     return checked
 

@@ -193,13 +193,12 @@ class Images(Textures):
             return None
         where = f"{place}: {path}"
         if packaged is None:
-            return _picture(*decoded(bytes_of(file, where), file.name, where), file.name)
+            return _decoded(bytes_of(file, where), file.name, where)
         with opened_package(file, where) as archive:
             if packaged["name"] not in archive.namelist():
                 return None
             data = member(archive, packaged["name"], where)
-        name = packaged["name"].rsplit("/", 1)[-1]
-        return _picture(*decoded(data, name, where), name)
+        return _decoded(data, packaged["name"].rsplit("/", 1)[-1], where)
 
     def _tiles(self, place: str, path: str) -> DecodedPicture | None:
         """Stitches the tiles of a UDIM pattern."""
@@ -244,6 +243,11 @@ class Images(Textures):
             most = memory.shown(_most_bytes())
             raise InputError(f"{place}: decoded pictures are too large: the limit is {most}")
         return picture
+
+
+def _decoded(data: bytes, name: str, where: str) -> DecodedPicture:
+    pixels, colors = decoded(data, name, where)
+    return _picture(pixels, colors, name)
 
 
 def _picture(

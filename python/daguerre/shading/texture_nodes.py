@@ -69,8 +69,8 @@ def usd_texture(given: Arguments) -> Mapping[str, Value]:
     bias = fit(given.value("bias", (0.0,) * 4), 4)
 
     def values(raw: bool) -> Value:
-        lie = (st or coordinates("st"), wraps, "linear", encoding, (0.0,) * 4)
-        found = sampled(given, *lie, raw=raw)
+        uv = st or coordinates("st")
+        found = sampled(given, uv, wraps, "linear", encoding, (0.0,) * 4, raw=raw)
         if found is None:
             return fallback
         return arithmetic.add(arithmetic.multiply(found, scale), bias)
@@ -199,7 +199,8 @@ def sampled(
         encoding = _SRGB if auto else Encoding()
     r, g, b, a = picture.planes(srgb=encoding.srgb)
     how = tuple("clamp" if picture.tiled else _wrap(given, name) for name in wraps)
-    lie = Lie(*_affine(uv, picture.transform), (how[0], how[1]), filter)
+    primvar, transform = _affine(uv, picture.transform)
+    lie = Lie(primvar, transform, (how[0], how[1]), filter)
     planes = [r, g, b] if a is None else [r, g, b, a]
     channels = [_on_surface(given, plane, lie, outside[i]) for i, plane in enumerate(planes)]
     color = in_rec709(tuple(channels[:3]), encoding, context.math)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from daguerre.motion.values import Keys
-from daguerre.shading.materialx.graph import Constant, Graph, Link
+from daguerre.shading.materialx.graph import Graph, Link
 
 
 def names_before(graph: Graph, ignored: frozenset[str]) -> list[str]:
@@ -16,8 +16,8 @@ def names_before(graph: Graph, ignored: frozenset[str]) -> list[str]:
         return []
     links = [
         value.node
-        for name, value in sorted(surface.inputs.items(), key=_color_first)
-        if isinstance(value, Link) and name not in ignored
+        for name in sorted(surface.inputs, key=_color_first)
+        if isinstance(value := surface.inputs[name], Link) and name not in ignored
     ]
     order: dict[str, None] = {}
     waiting = links[::-1]
@@ -32,8 +32,8 @@ def names_before(graph: Graph, ignored: frozenset[str]) -> list[str]:
     return list(order)
 
 
-def _color_first(item: tuple[str, Constant | Link]) -> tuple[bool, str]:
-    return item[0] not in ("diffuseColor", "base_color"), item[0]
+def _color_first(name: str) -> tuple[bool, str]:
+    return name not in ("diffuseColor", "base_color"), name
 
 
 def moving_nodes(graph: Graph) -> frozenset[str]:

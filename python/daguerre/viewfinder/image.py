@@ -70,11 +70,10 @@ def image_of(
     pixels = side_by_side(parts)
     height, width = pixels.shape[:2]
     kind, data = encoded(pixels, QUALITY)
-    tints = [_tinted(tint, *one) for one in zip(panels, parts, strict=True)]
+    tints = [_tinted(tint, panel, part) for panel, part in zip(panels, parts, strict=True)]
     head, more = _told(joined(tints, side_by_side))
     own = parts[drawn.main] if clean is None else shown(drawn.frame, drawn.shot)
-    part = parts[0].shape[1]
-    return Image(kind, data + more, (width, height), _histogram(own), head, part)
+    return Image(kind, data + more, (width, height), _histogram(own), head, parts[0].shape[1])
 
 
 def _frames(panels: Sequence[Panel], tint: str) -> list[Frame]:

@@ -115,7 +115,8 @@ def _meter(drawn: Drawn) -> dict[str, float] | None:
     """
     whole = drawn.request.shot.settings.film.resolution
     try:
-        luminance = luminance_of(drawn.frame, *metered_part(drawn.session, whole))
+        part = metered_part(drawn.session, whole)
+        luminance = luminance_of(drawn.frame, part.pattern, part.at)
         over = stops_over_grey(drawn.frame, luminance)
     except DaguerreError:  # such as a spot out of view, or a frozen shutter
         return None

@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import zip_longest
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from daguerre.frame.frame import Frame
 from daguerre.rendering.rounds import rounds
@@ -25,8 +25,18 @@ from .stage import Stage
 
 #: Time between two pictures at full size, s, if samples are that fast.
 LONGEST_S = 1.0
-#: Linear values of a picture, and the same larger, if that shows ghosts sharper.
-View = tuple[Frame, Frame | None]
+
+
+class _Frames(NamedTuple):
+    """Linear values of a picture.
+
+    Attributes:
+        frame: The picture.
+        sharp: The same larger, if that shows ghosts sharper.
+    """
+
+    frame: Frame
+    sharp: Frame | None
 
 
 class Do(Protocol):
@@ -76,9 +86,10 @@ class Work:
             while (step := do(partial(next, steps, None))) is not None:
                 plain = [session.frame(truth=False) for session in self._sessions]
                 views = list(map(_with_ghosts, plain, self._layers))
-                self.drawn = self._drawn(self.request, views, *step)
+                samples, rests = step
+                self.drawn = self._drawn(self.request, views, samples, rests)
                 yield self.drawn
-                if step[1]:
+                if rests:
                     return
 
     def _set_up(self, index: int, do: Do) -> None:
@@ -106,41 +117,44 @@ class Work:
         return layers or [None] * len(rung.shots)
 
     def _drawn(
-        self, request: PictureRequest, views: list[View], samples: int, rests: bool
+        self, request: PictureRequest, views: list[_Frames], samples: int, rests: bool
     ) -> Drawn:
         assert self._rung is not None
         rung, main = self._rung, self._rung.main
-        frame, sharp = views[main]
         parts = zip(rung.names, rung.shots, self._sessions, views, strict=False)
         return Drawn(
             request,
             rung.shots[main],
             self._sessions[main],
-            frame,
+            views[main].frame,
             samples,
             rests,
             whole=rung.last and not request.models,
-            panels=tuple(Panel(name, shot, session, *view) for name, shot, session, view in parts),
-            sharp=sharp,
+            panels=tuple(
+                Panel(name, shot, session, view.frame, view.sharp)
+                for name, shot, session, view in parts
+            ),
+            sharp=views[main].sharp,
             note=rung.note,
         )
 
     def _exposed(self, drawn: Drawn, request: PictureRequest) -> Drawn:
         """Returns a picture of the rung with the brightness of another request."""
-        before = [(one.frame, one.sharp) for one in drawn.panels or (drawn,)]
-        parts = zip(self._sessions, self._layers, before, strict=True)
-        views = [_view_exposed(*part) for part in parts]
+        before = [_Frames(one.frame, one.sharp) for one in drawn.panels or (drawn,)]
+        views = list(map(_exposed, self._sessions, self._layers, before))
         return self._drawn(request, views, drawn.samples, drawn.rests)
 
 
-def _view_exposed(session: Session, layer: Layer | None, view: View) -> View:
-    frame, sharp = view
+def _exposed(session: Session, layer: Layer | None, view: _Frames) -> _Frames:
+    sharp = view.sharp
     larger = None if layer is None or sharp is None else layer.session.exposed(sharp)
-    return session.exposed(frame), larger
+    return _Frames(session.exposed(view.frame), larger)
 
 
-def _with_ghosts(frame: Frame, layer: Layer | None) -> View:
-    return (frame, None) if layer is None else (layer.added(frame), layer.sharp(frame))
+def _with_ghosts(frame: Frame, layer: Layer | None) -> _Frames:
+    if layer is None:
+        return _Frames(frame, None)
+    return _Frames(layer.added(frame), layer.sharp(frame))
 
 
 def _session(stage: Stage, shot: Shot, last: bool = False) -> Session:

@@ -25,12 +25,7 @@ def write_film(output: Output) -> None:
     output.follow("horizontalAperture", "float", lambda c: c.sensor_size[0] / _TENTH, *film)
     output.follow("verticalAperture", "float", lambda c: _height(c) / _TENTH, *film)
     for i, side in enumerate(("horizontal", "vertical")):
-        output.follow(
-            f"{side}ApertureOffset",
-            "float",
-            partial(_offset, i),
-            *("shift", *film),
-        )
+        output.follow(f"{side}ApertureOffset", "float", partial(_offset, i), "shift", *film)
     by_diameter = output.camera.aperture_diameter is not None
     stops = ("aperture_diameter", *_LENS) if by_diameter else ("f_stop",)
     output.follow("fStop", "float", stop_of, *stops)

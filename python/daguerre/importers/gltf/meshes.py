@@ -136,8 +136,9 @@ class Meshes:
         weights = weights_of(node, item)
         shape = None if weights is None else tuple(w.number() for w in weights)
         holder = item if node.get("weights") is None else node
-        owner = ("meshes" if holder is item else "nodes", str(holder.key))
-        moved = [c for c in self._animations.of(*owner) if "weights" in c.tokens]
+        owners = "meshes" if holder is item else "nodes"
+        found = self._animations.of(owners, str(holder.key))
+        moved = [c for c in found if "weights" in c.tokens]
         changes = tuple((id(c.track), *c.tokens[2:]) for c in moved)
         key = index, shape, chosen, changes
         if key not in self._parts:
@@ -190,7 +191,7 @@ class Meshes:
         indices, weights = primitive.get("indices"), owner.get("weights")
         displaced = displacements(primitive, weights, self._accessors, self._notes)
         return _Source(
-            *(primitive, mode, indices, attributes, displaced, chosen, owner, moved, changes)
+            primitive, mode, indices, attributes, displaced, chosen, owner, moved, changes
         )
 
     def _is_nothing(self, skin: int) -> bool:

@@ -126,7 +126,9 @@ class Placing:
         flat = self._scene.meshes[mesh]
         points = flat.positions @ world[:3, :3].T + world[:3, 3]
         return self._scene.add_mesh(
-            *(points, flat.indices, None, flat.uv),
+            points,
+            flat.indices,
+            uv=flat.uv,
             uv1=flat.uv1,
             colors=flat.colors,
             motion=motion,

@@ -134,8 +134,14 @@ class _GltfReader:
         for name in variants.names:
             self.scene.add_variant(name)
         self.meshes = Meshes(
-            *(self.root, self.accessors, self.animations, skins, variants),
-            *(self.scene, copies, self.notes),
+            self.root,
+            self.accessors,
+            self.animations,
+            skins,
+            variants,
+            self.scene,
+            copies,
+            self.notes,
         )
         self.placing = Placing(self.scene, copies, self.notes)
         self.moving = MotionReader(self.root, self.animations, self.poses, time)
@@ -223,7 +229,8 @@ class _GltfReader:
         motion = self.moving.light(partial(read_light, name=name), item, placed.index)
         rigid = without_scale(placed.world)
         if motion is not None:
-            self.scene.add_light(*motion.at(self.scene.time), motion=motion)
+            now, transform = motion.at(self.scene.time)
+            self.scene.add_light(now, transform, motion=motion)
         elif rigid is None:
             self.notes.add("a light whose node is scaled to zero is left out")
         else:

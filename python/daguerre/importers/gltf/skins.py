@@ -94,11 +94,9 @@ class Skins:
 
     def over_time(self, index: int, influences: Influences) -> SkinOverTime:
         """Joints over time, for a mesh with these influences."""
-        still = self.matrices(index)
-        return SkinOverTime(
-            *(self._poses, self._joint_nodes[index], self._bind[index]),
-            *(None if self.moves(index) else still, influences),
-        )
+        still = None if self.moves(index) else self.matrices(index)
+        joints, bind = self._joint_nodes[index], self._bind[index]
+        return SkinOverTime(self._poses, joints, bind, still, influences)
 
     def moves(self, index: int) -> bool:
         """Whether a joint moves."""

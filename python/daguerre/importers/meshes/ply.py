@@ -13,6 +13,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,13 +61,17 @@ def read(path: str | os.PathLike[str], notes: Notes) -> FileMesh:
     tables = _tables(header, data, str(file), notes)
     if "vertex" not in tables:
         raise InputError(f"{file}: the element vertex is missing")
-    mesh = _vertices(*tables["vertex"], f"{file}: vertex", notes)
+    mesh = _vertices(tables["vertex"], f"{file}: vertex", notes)
     if "face" not in tables:
         raise InputError(f"{file}: the element face is missing")
-    return _with_faces(mesh, *tables["face"], f"{file}: face", notes)
+    return _with_faces(mesh, tables["face"], f"{file}: face", notes)
 
 
-Table = tuple[Element, Rows]
+class Table(NamedTuple):
+    """An element of the header, and its rows."""
+
+    element: Element
+    rows: Rows
 
 
 def _tables(header: Header, data: Bytes, where: str, notes: Notes) -> dict[str, Table]:
@@ -81,7 +86,7 @@ def _tables(header: Header, data: Bytes, where: str, notes: Notes) -> dict[str, 
         rows = Rows(element, data, begin, order, f"{where}: element {element.name}")
         begin = rows.end
         if element.name in ("vertex", "face"):
-            found[element.name] = (header.find(element.name), rows)
+            found[element.name] = Table(header.find(element.name), rows)
         else:
             notes.add(f"the element {element.name!r} of a PLY file is not used")
     if begin < len(data):
@@ -104,11 +109,12 @@ def _of_doubles(element: Element) -> Element:
     return replace(element, properties=tuple(columns))
 
 
-def _vertices(element: Element, rows: Rows, where: str, notes: Notes) -> FileMesh:
+def _vertices(table: Table, where: str, notes: Notes) -> FileMesh:
     """Vertices with their values, without faces."""
+    element = table.element
     if not _has(element, _POSITION):
         raise InputError(f"{where}: the properties x, y and z are missing")
-    positions = checked_positions(rows.positions(_POSITION), where, _POSITION[0])
+    positions = checked_positions(table.rows.positions(_POSITION), where, _POSITION[0])
     uv = next((names for names in _UV if _has(element, names)), ())
     colored = next((names for names in _COLORS if _has(element, names)), ())
     used = {*_POSITION, *_NORMAL, *uv, *colored}
@@ -116,9 +122,9 @@ def _vertices(element: Element, rows: Rows, where: str, notes: Notes) -> FileMes
     return FileMesh(
         positions,
         np.zeros(0, np.uint32),
-        normals=_values(element, rows, _NORMAL, where),
-        uv=_values(element, rows, uv, where),
-        colors=_colors(element, rows, colored, where),
+        normals=_values(table, _NORMAL, where),
+        uv=_values(table, uv, where),
+        colors=_colors(table, colored, where),
     )
 
 
@@ -127,20 +133,20 @@ def _has(element: Element, names: tuple[str, ...]) -> bool:
     return all((p := element.find(name)) is not None and not p.counted for name in names)
 
 
-def _values(element: Element, rows: Rows, names: tuple[str, ...], where: str) -> Floats | None:
+def _values(table: Table, names: tuple[str, ...], where: str) -> Floats | None:
     """Columns, shape (N, K); None: the element has them not."""
-    if not names or not _has(element, names):
+    if not names or not _has(table.element, names):
         return None
-    found = rows.numbers(names)
+    found = table.rows.numbers(names)
     check_finite(found, where, names[0])
     freeze_in_place(found)
     return found
 
 
-def _colors(element: Element, rows: Rows, names: tuple[str, ...], where: str) -> Floats | None:
+def _colors(table: Table, names: tuple[str, ...], where: str) -> Floats | None:
     """Linear colours; whole numbers are encoded as sRGB, of the range of their type."""
-    found = _values(element, rows, names, where)
-    first = element.find(names[0]) if names else None
+    found = _values(table, names, where)
+    first = table.element.find(names[0]) if names else None
     if found is None or first is None or first.largest == 0:
         return found
     scaled = found / np.float32(first.largest)
@@ -148,18 +154,19 @@ def _colors(element: Element, rows: Rows, names: tuple[str, ...], where: str) ->
     return freeze_in_place(scaled)
 
 
-def _with_faces(mesh: FileMesh, element: Element, rows: Rows, where: str, notes: Notes) -> FileMesh:
+def _with_faces(mesh: FileMesh, table: Table, where: str, notes: Notes) -> FileMesh:
     """The mesh with its faces."""
+    element = table.element
     name = next((n for n in _CORNERS if (p := element.find(n)) is not None and p.counted), None)
     if name is None:
         raise InputError(f"{where}: the list vertex_indices (or vertex_index) is missing")
-    faces = rows.lists(name)
-    uv, used = _corner_uv(element, rows, faces, notes), {name}
+    faces = table.rows.lists(name)
+    uv, used = _corner_uv(table, faces, notes), {name}
     if uv is not None:
         check_finite(uv[0], where, uv[1])
         used.add(uv[1])
     colored = next((names for names in _COLORS if _has(element, names)), ())
-    colors = _colors(element, rows, colored, where)
+    colors = _colors(table, colored, where)
     _note_others(element, {*used, *colored}, "faces", notes)
     corners = check_corners(faces.values, len(mesh.positions), where)
     sizes = faces.sizes
@@ -181,14 +188,12 @@ def _with_faces(mesh: FileMesh, element: Element, rows: Rows, where: str, notes:
     return whole_mesh if corner_uv is None else with_corner_uv(whole_mesh, corner_uv)
 
 
-def _corner_uv(
-    element: Element, rows: Rows, faces: Lists, notes: Notes
-) -> tuple[Floats, str] | None:
+def _corner_uv(table: Table, faces: Lists, notes: Notes) -> tuple[Floats, str] | None:
     """Texture coordinates of corners, shape (C, 2), and the name of their list."""
     for name in _CORNER_UV:
-        given = element.find(name)
+        given = table.element.find(name)
         if given is not None and given.counted:
-            lists = rows.lists(name)
+            lists = table.rows.lists(name)
             if (lists.sizes == 2 * faces.sizes).all():
                 with np.errstate(over="ignore", invalid="ignore"):
                     return lists.values.astype(np.float32).reshape(-1, 2), name

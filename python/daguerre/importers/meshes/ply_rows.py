@@ -115,8 +115,9 @@ class Rows:
     def _column(self, number: int, count: int) -> NDArray[Any]:
         """All ``count`` numbers of a property, or of its lists, of rows with lists."""
         out = np.empty(count, self._order + self._element.properties[number].type)
-        rows = self._data, self._begin, self._fields, self._lengths, number
-        _core.copy_field(*rows, out.view(np.uint8))
+        _core.copy_field(
+            self._data, self._begin, self._fields, self._lengths, number, out.view(np.uint8)
+        )
         return out if out.dtype.isnative else out.astype(out.dtype.newbyteorder("="))
 
 

@@ -117,8 +117,9 @@ class Surfaces:
         return self._coated(node, self._roughness(node) | {"energy_compensation": False})
 
     def _coated(self, node: Node, fields: dict[str, Any]) -> Appearance:
+        reflectance, texture = self.textures.tint(node, "diffuse_reflectance", 0.5)
         kind = Coated(
-            Diffuse(*self.textures.tint(node, "diffuse_reflectance", 0.5)),
+            Diffuse(reflectance, texture),
             ior=relative_index(node, "polypropylene"),
             specular_tint=self.textures.share(node, "specular_reflectance", 1.0),
             nonlinear=node.flag("nonlinear", False),

@@ -127,8 +127,9 @@ class Placing:
         key = (node.plugin, inward(node))
         if key not in self._solids:
             mesh = solid.mesh
-            arrays = mesh.positions, mesh.triangles, mesh.normals, mesh.uv
-            self._solids[key] = self._scene.add_mesh(*arrays, name=node.plugin)
+            self._solids[key] = self._scene.add_mesh(
+                mesh.positions, mesh.triangles, mesh.normals, mesh.uv, name=node.plugin
+            )
         return self._solids[key], solid.inner
 
     def _named(self, node: Node, place: Matrix) -> str:

@@ -140,7 +140,7 @@ class Textures:
                 filter=image.filter,
                 name=image.name,
             )
-            return Shade(factor, TextureSlot(index, *self._placed(image.mapping, 1.0)))
+            return Shade(factor, self._slot(index, image.mapping, 1.0))
         found = self._once(made, node, curve, key)
         if not self._slots_in(found.mapping):
             self._ledger.notes.add("a second 3D mapping in one material shows its mean value")
@@ -153,9 +153,7 @@ class Textures:
             filter=found.filter,
             name="baked",
         )
-        return Shade(
-            (1.0, 1.0, 1.0), TextureSlot(index, *self._placed(found.mapping, found.period))
-        )
+        return Shade((1.0, 1.0, 1.0), self._slot(index, found.mapping, found.period))
 
     def _once(self, made: Made, node: Node, curve: Curve | None, key: object) -> Baked:
         found = self._baked.get((node, key))
@@ -170,14 +168,12 @@ class Textures:
         """Whether the mesh has texture coordinates for a mapping."""
         return isinstance(mapping, UvMapping) or self.space in (None, mapping)
 
-    def _placed(
-        self, mapping: Mapping, period: float
-    ) -> tuple[int, tuple[float, float, float, float, float, float]]:
-        """Set of texture coordinates and transform of a picture."""
+    def _slot(self, index: int, mapping: Mapping, period: float) -> TextureSlot:
+        """Texture with the texture coordinates and the transform of a mapping."""
         if isinstance(mapping, UvMapping):
-            return 0, mapping.transform(period)
+            return TextureSlot(index, 0, mapping.transform(period))
         self.space = mapping
-        return 1, UvMapping().transform(period)
+        return TextureSlot(index, 1, UvMapping().transform(period))
 
 
 def _plain(node: Node) -> tuple[Color, Image | None]:

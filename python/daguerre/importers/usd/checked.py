@@ -136,11 +136,8 @@ class Checked:
         """Checks a number, or each of its keys, by the limits of a parameter of ``Camera``."""
         row = CAMERA[field]
         for part in value.values if isinstance(value, Keys) else (value,):
-            number(
-                *(part, self.place(name), row.low, row.high),
-                infinite=row.infinite,
-                error=InputError,
-            )
+            where = self.place(name)
+            number(part, where, row.low, row.high, infinite=row.infinite, error=InputError)
         return value
 
     def _tuple(self, name: str, value: object, count: int | None) -> tuple[float, ...]:

@@ -65,8 +65,8 @@ class _Crate:
         packed = self._version >= (0, 4, 0)
         for name, (counts, blocks) in _SECTIONS.items():
             if name in sections:
-                what = name.decode().lower()
-                self._section(what, *sections[name], *((counts, blocks) if packed else (1, 0)))
+                what, (begin, size) = name.decode().lower(), sections[name]
+                self._section(what, begin, size, counts if packed else 1, blocks if packed else 0)
         if b"STRINGS" in sections:
             begin, size = sections[b"STRINGS"]
             self._fits("strings", self._numbers("Q", begin)[0], (size - 8) / 4)

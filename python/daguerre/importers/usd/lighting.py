@@ -241,7 +241,7 @@ class Lighting:
     def _mesh_of(self, visit: Visit, solid: ShapeMesh) -> int:
         if visit.source not in self._meshes:
             self._meshes[visit.source] = self._scene.add_mesh(
-                *(solid.positions, solid.triangles, solid.normals, solid.uv), name=visit.path
+                solid.positions, solid.triangles, solid.normals, solid.uv, name=visit.path
             )
         return self._meshes[visit.source]
 

@@ -273,7 +273,7 @@ class _UsdReader:
                 "a solid whose size changes over time keeps its size at the scene's time"
             )
         return self.scene.add_mesh(
-            *(solid.positions, solid.triangles, solid.normals, solid.uv), name=str(prim.GetPath())
+            solid.positions, solid.triangles, solid.normals, solid.uv, name=str(prim.GetPath())
         )
 
     def _spheres(self, visit: Visit, spots: Spots) -> None:
@@ -281,9 +281,9 @@ class _UsdReader:
 
     def _curves(self, visit: Visit, spots: Spots) -> None:
         if visit.source not in self._shapes:
+            colored = not self._bindings.bound(visit.prim)
             self._shapes[visit.source] = read_curves(
-                *(visit.prim, self.scene, self._clock, self._notes),
-                colored=not self._bindings.bound(visit.prim),
+                visit.prim, self.scene, self._clock, self._notes, colored=colored
             )
         mesh = self._shapes[visit.source]
         if mesh is not None:
@@ -294,7 +294,11 @@ class _UsdReader:
     def _cameras(self, visits: list[Visit], millimetres: float | None) -> None:
         opened = self._opened
         facts = StageFacts(
-            *(opened.file, self._clock, opened.metres, millimetres, opened.assets.file_of),
+            opened.file,
+            self._clock,
+            opened.metres,
+            millimetres,
+            opened.assets.file_of,
             fps=opened.fps,
         )
         found = [visit for visit in visits if visit.prim.IsA(UsdGeom.Camera)]

@@ -123,8 +123,9 @@ class Skeletons:
         if not (np.isfinite(inverse).all() and np.isfinite(rest).all()):
             raise InputError(f"{where}: transforms must be finite")
         parents = np.asarray(query.GetTopology().GetParentIndices(), np.int64)
-        animated, parts = self._animation(query.GetAnimQuery(), order)
-        return JointPoses(*parts, animated, rest, parents, inverse)
+        animated, moved = self._animation(query.GetAnimQuery(), order)
+        translations, rotations, scales = moved
+        return JointPoses(translations, rotations, scales, animated, rest, parents, inverse)
 
     def _animation(
         self, animation: UsdSkel.AnimQuery, order: list[str]

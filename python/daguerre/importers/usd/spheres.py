@@ -73,7 +73,7 @@ def read_spheres(
     assert solid is not None
     placing.check(len(crowd.scales[0]) * len(spots), visit.path)
     mesh = scene.add_mesh(
-        *(solid.positions, solid.triangles, solid.normals, solid.uv), name=visit.path
+        solid.positions, solid.triangles, solid.normals, solid.uv, name=visit.path
     )
     now = crowd.at(clock.time)
     moves = crowd.moves or spots.moving is not None

@@ -11,7 +11,7 @@ import numpy as np
 from daguerre.files.json_item import clean
 from daguerre.lenses.errors import LensError
 
-from .draft import FAR, Draft, Table, lay_out, surface, with_thicknesses
+from .draft import FAR, Draft, SurfacePose, Table, lay_out, surface, with_thicknesses
 from .pupil import Pupil, size_stops
 from .text import Unread
 
@@ -63,7 +63,7 @@ def lens_file(
     data["nominal"] = nominal or {}
     if drafts[0].glass is not None:
         data["object_medium"] = drafts[0].glass
-    data["surfaces"] = [surface(*row) for row in placed]
+    data["surfaces"] = [surface(draft, gap, place) for draft, gap, place in placed]
     _fit_apertures(data["surfaces"], unread)
     data["configurations"] = []
     for c, table in zip(configurations, tables, strict=True):
@@ -115,7 +115,7 @@ def _check_gaps(file: str, c: Configuration, table: Table) -> None:
 def _same_places(a: Table, b: Table) -> bool:
     if [d.number for d in a.drafts] != [d.number for d in b.drafts]:
         return False
-    zero = ([0.0] * 3, [0.0] * 3)
+    zero = SurfacePose([0.0] * 3, [0.0] * 3)
     return all(
         np.allclose(p or zero, q or zero, rtol=0, atol=1e-9)
         for p, q in zip(a.places, b.places, strict=True)
@@ -137,10 +137,10 @@ def _fit_apertures(surfaces: list[dict[str, Any]], unread: Unread) -> None:
 
 def _film_note(table: Table, unread: Unread) -> None:
     if table.film is not None:
-        shift, tilt = table.film
+        decenter, tilt = table.film
         unread.add(
             "the film is decentred by "
-            + ", ".join(f"{v:.4g}" for v in shift[:2])
+            + ", ".join(f"{v:.4g}" for v in decenter[:2])
             + " mm and tilted by "
             + ", ".join(f"{v:.4g}" for v in tilt)
             + " degrees; it is taken as square to the axis of the first surface"

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,6 +53,18 @@ class Draft:
     after: Frame | None = None
 
 
+class SurfacePose(NamedTuple):
+    """Decentre and tilt of a surface, as in the lens file.
+
+    Attributes:
+        decenter: Decentre along x, y and z, mm.
+        tilt: Angles about x, the new y and the new z, degrees.
+    """
+
+    decenter: list[float]
+    tilt: list[float]
+
+
 @dataclass(frozen=True)
 class Table:
     """The surfaces that are kept, at one configuration.
@@ -67,9 +79,9 @@ class Table:
 
     drafts: list[Draft]
     gaps: list[float]
-    places: list[tuple[list[float], list[float]] | None]
+    places: list[SurfacePose | None]
     object_distance: float
-    film: tuple[list[float], list[float]] | None
+    film: SurfacePose | None
 
 
 def moved(decenter: list[float], tilt: list[float], tilt_first: bool = False) -> Frame:
@@ -149,16 +161,16 @@ def lay_out(drafts: list[Draft], file: str) -> Table:
     return Table([d for d, _, _ in kept], gaps, places, ahead, _place(frame))
 
 
-def _place(frame: Frame) -> tuple[list[float], list[float]] | None:
-    """Decentre (mm) and tilt (degrees, as in the lens file) of a frame; None: on the axis."""
+def _place(frame: Frame) -> SurfacePose | None:
+    """Decentre and tilt of a frame; None: on the axis."""
     shift = [float(frame[0, 3]), float(frame[1, 3]), 0.0]
     tilt = list(angles(frame[:3, :3]))
     shift = [0.0 if abs(v) < 1e-12 else v for v in shift]
     tilt = [0.0 if abs(v) < 1e-12 else v for v in tilt]
-    return (shift, tilt) if any(shift) or any(tilt) else None
+    return SurfacePose(shift, tilt) if any(shift) or any(tilt) else None
 
 
-def surface(draft: Draft, gap: float, place: tuple[list[float], list[float]] | None) -> Any:
+def surface(draft: Draft, gap: float, place: SurfacePose | None) -> Any:
     """Converts a draft to a surface of the lens file."""
     flat = draft.form == "conic" and draft.curvature == 0 and not any(draft.asphere.values())
     aspheric = draft.conic != 0 or any(draft.asphere.values())
@@ -184,7 +196,7 @@ def surface(draft: Draft, gap: float, place: tuple[list[float], list[float]] | N
     if draft.after_semi_diameter:
         out["semi_diameter_after"] = draft.after_semi_diameter
     if place is not None:
-        out |= {"decenter": place[0], "tilt": place[1]}
+        out |= {"decenter": place.decenter, "tilt": place.tilt}
     return out
 
 

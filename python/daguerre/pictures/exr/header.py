@@ -53,7 +53,7 @@ class ExrHeader:
     @property
     def facts(self) -> dict[str, Any]:
         """Values of all attributes of known type, by name."""
-        known = {name: _decoded(*typed) for name, typed in self.attributes.items()}
+        known = {name: _decoded(kind, data) for name, (kind, data) in self.attributes.items()}
         return {name: value for name, value in known.items() if value is not None}
 
     @property

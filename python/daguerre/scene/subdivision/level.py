@@ -7,6 +7,7 @@ corner of a face is also its half-edge to the next corner. Edges with two faces 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +44,22 @@ class Sharp:
         """Sharpness one level later, for the same numbers."""
         left = softened(self.values)
         return Sharp(self.ids[left > 0], left[left > 0])
+
+
+class VertexGroup(NamedTuple):
+    """Vertices of one kind and valence.
+
+    Attributes:
+        kind: ``CLOSED``, ``OPEN`` or ``DART``.
+        valence: Number of spokes.
+        special: Whether the vertices are sharp, or have a sharp spoke.
+        vertices: The vertices, shape (M,).
+    """
+
+    kind: int
+    valence: int
+    special: bool
+    vertices: IntArray
 
 
 def softened(sharpness: FloatArray) -> FloatArray:
@@ -167,11 +184,11 @@ class Level:
         ends = self.vertices[halves], self.vertices[self.after(halves)]
         return np.unique(np.concatenate([*ends, self.sharp_vertices.ids]))
 
-    def groups(self, regular: int) -> list[tuple[int, int, bool, IntArray]]:
-        """Vertices by kind, valence and whether they are special, as (.., vertices)."""
+    def groups(self, regular: int) -> list[VertexGroup]:
+        """Vertices by kind, valence and whether they are special."""
         plain = (self.valences == regular) & (self.kinds == CLOSED)
         plain[self.special] = False
-        found = [(CLOSED, regular, False, np.flatnonzero(plain))]
+        found = [VertexGroup(CLOSED, regular, False, np.flatnonzero(plain))]
         rest = np.flatnonzero(~plain)
         special = np.zeros(self.count, bool)
         special[self.special] = True
@@ -180,5 +197,5 @@ class Level:
         cuts = np.flatnonzero(np.diff(keys[order])) + 1
         for part in np.split(rest[order], cuts) if len(rest) else []:
             kind, valence = int(self.kinds[part[0]]), int(self.valences[part[0]])
-            found.append((kind, valence, bool(special[part[0]]), part))
+            found.append(VertexGroup(kind, valence, bool(special[part[0]]), part))
         return found

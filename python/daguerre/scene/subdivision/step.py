@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .level import CLOSED, OPEN, Level
+from .level import CLOSED, OPEN, Level, VertexGroup
 from .rules import FloatArray, IntArray
 from .scheme import Scheme
 from .sharpness import open_weights
@@ -43,7 +43,9 @@ class Step:
 def smooth_step(level: Level, scheme: Scheme) -> Step:
     """Step by the rules of a scheme."""
     points = [
-        _vertices(level, scheme, *group) for group in level.groups(scheme.regular) if len(group[3])
+        _vertices(level, scheme, group)
+        for group in level.groups(scheme.regular)
+        if len(group.vertices)
     ]
     points += [*_inner_edges(level, scheme), _rim(level, len(level.second))]
     return _step(level, scheme.quads, points)
@@ -109,10 +111,9 @@ def _inner_edges(level: Level, scheme: Scheme) -> list[Group]:
     ]
 
 
-def _vertices(
-    level: Level, scheme: Scheme, kind: int, valence: int, special: bool, vertices: IntArray
-) -> Group:
+def _vertices(level: Level, scheme: Scheme, group: VertexGroup) -> Group:
     """Points of vertices of one kind and valence."""
+    kind, valence, special, vertices = group
     sharpness = level.sharp_vertices.of(vertices) if special else np.zeros(0)
     if kind == OPEN:
         fan = level.fan(vertices, valence)
