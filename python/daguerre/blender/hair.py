@@ -100,7 +100,7 @@ class Hair:
             basis=kind[0],
             wrap=kind[1],
             uv=uv,
-            steps=None if steps is None else (steps[0], steps[1][:, rows]),
+            steps=None if steps is None else steps.of(rows),
             name=curves.name_full,
         )
 

@@ -24,7 +24,24 @@ if TYPE_CHECKING:
 
 Matrix = NDArray[np.float64]
 #: Times (S,) in s, and points of all vertices at each, shape (S, N, 3).
-Steps = tuple[Sequence[float], NDArray[np.float32]]
+
+
+class Steps(NamedTuple):
+    """Points over time.
+
+    Attributes:
+        times: Times, s, shape (S,).
+        points: Points at those times, shape (S, N, 3).
+    """
+
+    times: Sequence[float]
+    points: NDArray[np.float32]
+
+    def of(self, rows: NDArray[np.integer]) -> Steps:
+        """Some of the points."""
+        return Steps(self.times, self.points[:, rows])
+
+
 Parts = list[tuple[int, int]]
 #: Mesh, slot, and the material that was made for the mesh; None: the slot's material.
 Added = list[tuple[int, int, int | None]]
@@ -177,7 +194,7 @@ class Meshes:
     ) -> Added:
         """Adds a mesh for each slot that some face has."""
         source = source_of(mesh, len(slots))
-        for points in (source.points, steps[1] if steps else source.points):
+        for points in (source.points, steps.points if steps else source.points):
             check_size(points, f"mesh {mesh.name_full!r}: positions")
         used = np.unique(source.slots)
         parts: Added = []
@@ -211,7 +228,7 @@ class Meshes:
         first, number = weld(vertices, *values.values())
         rows = vertices[first]
         given: dict[str, Any] = {n: freeze_in_place(value[first]) for n, value in values.items()}
-        moved = None if steps is None else (steps[0], steps[1][:, rows])
+        moved = None if steps is None else steps.of(rows)
         return self._scene.add_mesh(
             freeze_in_place(source.points[rows]),
             freeze_in_place(number.astype(np.uint32)[corners]),

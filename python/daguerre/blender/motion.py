@@ -253,4 +253,4 @@ def _steps(
             "a mesh that gains or loses vertices while the shutter is open is drawn without motion"
         )
         return None
-    return times, np.stack(shapes)
+    return Steps(times, np.stack(shapes))

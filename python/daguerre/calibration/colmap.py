@@ -75,7 +75,8 @@ def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[
     text = suffix == ".txt"
     cameras: dict[str, Projection] = {}
     listed = folder / f"cameras{suffix}"
-    for camera in _cameras_of_text(listed) if text else colmap_bin.cameras(listed, MODELS):
+    counts = {name: focals + 2 + more for name, (_, focals, more) in MODELS.items()}
+    for camera in _cameras_of_text(listed) if text else colmap_bin.cameras(listed, counts):
         if camera.name in cameras:
             raise InputError(f"{camera.where}: camera {camera.name} appears twice")
         cameras[camera.name] = _projection(camera)

@@ -65,13 +65,12 @@ class _ColmapReader:
         raise InputError(f"{self.path}: truncated: the file ends at byte {self.size}")
 
 
-def cameras(path: Path, models: Mapping[str, tuple[str, int, int]]) -> Iterator[CameraRow]:
+def cameras(path: Path, counts: Mapping[str, int]) -> Iterator[CameraRow]:
     """Yields the cameras of a ``cameras.bin``.
 
     Args:
         path: The file.
-        models: Numbers of focal lengths and of parameters beside the centre, by model; without
-            them the length of a camera is not known.
+        counts: Number of parameters by model, which gives the length of a camera.
 
     Raises:
         InputError: The file cannot be read, or has another model.
@@ -82,10 +81,9 @@ def cameras(path: Path, models: Mapping[str, tuple[str, int, int]]) -> Iterator[
             camera, model, width, height = (int(v) for v in reader.take("IiQQ"))
             where = f"{path}: camera {index + 1}"
             name = NAMES[model] if 0 <= model < len(NAMES) else f"number {model}"
-            if name not in models:
-                raise InputError(f"{where}: model: wanted {', '.join(models)}; got {name}")
-            _, focals, more = models[name]
-            numbers = list(reader.take(f"{focals + 2 + more}d"))
+            if name not in counts:
+                raise InputError(f"{where}: model: wanted {', '.join(counts)}; got {name}")
+            numbers = list(reader.take(f"{counts[name]}d"))
             _check(numbers, where)
             yield CameraRow(where, str(camera), name, (width, height), numbers)
 

@@ -8,6 +8,8 @@ Source: sensor_msgs/CameraInfo (also for regions and binning), and REP 104.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from daguerre.argument_checks import guarded
@@ -21,7 +23,6 @@ from .source import camera_matrix, choice, first, load, matrix, needed, row
 from .stereo import rectified_of, rotation
 
 Pair = tuple[float, float]
-Numbers = tuple[str, Pair, Pair, tuple[float, ...]]
 PROJECTION = ("projection_matrix", "P", "p")
 OFFSETS, SIDES = ("x_offset", "y_offset"), ("width", "height")
 
@@ -54,8 +55,7 @@ def read_ros(source: Source, *, rectified: bool = False) -> Calibration:
         needed(root, "the size of the picture", *names).integer(1, 65536)
         for names in (("image_width", "width"), ("image_height", "height"))
     ]
-    numbers = _rectified(root) if rectified else _raw(root)
-    model, focal, principal, values = numbers
+    model, focal, principal, values = _rectified(root) if rectified else _raw(root)
     size, focal, principal, notes = _read_out(root, sides, focal, principal, whole=rectified)
     made = projection(root.file, model, size, focal, principal, values)
     name = root.get("camera_name")
@@ -65,8 +65,17 @@ def read_ros(source: Source, *, rectified: bool = False) -> Calibration:
     return Calibration(made, "" if name is None else name.text(), stands, notes=notes)
 
 
-def _raw(root: Item) -> Numbers:
-    """Model, focal lengths, principal point and parameters of the raw picture."""
+class _Intrinsics(NamedTuple):
+    """Intrinsics of a picture, px, before region of interest and binning."""
+
+    model: str
+    focal: Pair
+    principal: Pair
+    parameters: tuple[float, ...]
+
+
+def _raw(root: Item) -> _Intrinsics:
+    """Reads the intrinsics of the raw picture."""
     focal, principal = camera_matrix(needed(root, "a camera matrix", "camera_matrix", "K", "k"))
     named = choice(needed(root, "a model", "distortion_model"), MODELS)
     model, counts = MODELS[named]
@@ -74,7 +83,7 @@ def _raw(root: Item) -> Numbers:
     # Some drivers write a shape that does not fit the numbers.
     data = found.need("data") if isinstance(found.value, dict) else found
     values = row(data, counts)
-    return model if values else "rectilinear", focal, principal, values
+    return _Intrinsics(model if values else "rectilinear", focal, principal, values)
 
 
 def _length_notes(root: Item, count: int) -> tuple[str, ...]:
@@ -93,10 +102,10 @@ def _length_notes(root: Item, count: int) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _rectified(root: Item) -> Numbers:
-    """Model, focal lengths, principal point and parameters of the rectified picture."""
-    focal, principal, _ = rectified_of(needed(root, "a projection matrix", *PROJECTION))
-    return "rectilinear", focal, principal, ()
+def _rectified(root: Item) -> _Intrinsics:
+    """Reads the intrinsics of the rectified picture."""
+    found = rectified_of(needed(root, "a projection matrix", *PROJECTION))
+    return _Intrinsics("rectilinear", found.focal, found.principal, ())
 
 
 def _read_out(

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -124,23 +125,37 @@ def _rectified(
     """Projection by P, and pose in the frame to which R1 rotates the first camera."""
     turn = rotation(pose.need("R1"))
     rotation(pose.need(f"R{number}"))
-    focal, principal, away = rectified_of(pose.need(f"P{number}"))
-    made = projection(f"{pose.file}: P{number}", "rectilinear", pixels, focal, principal, ())
+    found = rectified_of(pose.need(f"P{number}"))
+    where = f"{pose.file}: P{number}"
+    made = projection(where, "rectilinear", pixels, found.focal, found.principal, ())
     stands = np.eye(4)
     stands[:3, :3] = turn.T
-    stands[:3, 3] = unit_m * turn.T @ away
+    stands[:3, 3] = unit_m * turn.T @ found.shift
     return made, stands
 
 
-def rectified_of(
-    item: Item,
-) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float, float]]:
-    """Focal lengths and principal point of a P, px, and the camera's shift, right and down."""
+class Rectified(NamedTuple):
+    """Numbers of a projection matrix P.
+
+    Attributes:
+        focal: Focal lengths, px.
+        principal: Principal point, px.
+        shift: Shift of the camera, right and down, in the unit of P.
+    """
+
+    focal: tuple[float, float]
+    principal: tuple[float, float]
+    shift: tuple[float, float, float]
+
+
+def rectified_of(item: Item) -> Rectified:
+    """Reads a projection matrix P."""
     p = matrix(item, 3, 4)
     if p[0, 1] != 0 or p[1, 0] != 0 or (p[2] != (0, 0, 1, 0)).any() or min(p[0, 0], p[1, 1]) <= 0:
         item.fail(f"wanted [fx 0 cx tx; 0 fy cy ty; 0 0 1 0], got {p.tolist()}")
     away = float(-p[0, 3] / p[0, 0]), float(-p[1, 3] / p[1, 1]), 0.0
-    return (float(p[0, 0]), float(p[1, 1])), (float(p[0, 2]), float(p[1, 2])), away
+    focal, principal = (float(p[0, 0]), float(p[1, 1])), (float(p[0, 2]), float(p[1, 2]))
+    return Rectified(focal, principal, away)
 
 
 def rotation(item: Item) -> FloatArray:

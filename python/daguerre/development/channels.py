@@ -166,7 +166,8 @@ def of_raw(raw: Raw, demosaic: Demosaic = USUAL) -> Channels:
     raw = bayer_of(raw)
     if is_mono(raw):
         return _of_pixels(raw, _grey(raw), np.ones(3))
-    return _of_pixels(raw, *_demosaiced(raw, demosaic))
+    pixels, scale = _demosaiced(raw, demosaic)
+    return _of_pixels(raw, pixels, scale)
 
 
 def of_cells(raw: Raw, means: NDArray[np.float32]) -> Channels:

@@ -145,11 +145,17 @@ def damage() -> Iterator[None]:
 
 
 def _arrays(
-    facts: Iterable[tuple[str, Sequence[int], str | None]],
+    facts: Iterable[Sequence[Any]],
     data: bytes,
     large: Callable[[str], bytes],
 ) -> list[NDArray[Any]]:
-    """Arrays over packed bytes, not copied, and so read-only."""
+    """Arrays over packed bytes, not copied, and so read-only.
+
+    Args:
+        facts: Type, shape, and name of each array; the name is None within ``data``.
+        data: Bytes of the small arrays.
+        large: Function that returns the bytes of a large array by its name.
+    """
     found, begin = [], 0
     for text, shape, name in facts:
         kind = np.dtype(text)

@@ -43,15 +43,15 @@ class Agreement:
 
     def __str__(self) -> str:
         product = "the measured product" if self.product == "A" else "a measured relative"
-        stops = (self.open_ev, "EV open"), (self.stopped_ev, "EV stopped down")
-        parts = (
+        light = _joined([_off(self.open_ev, "EV open"), _off(self.stopped_ev, "EV stopped down")])
+        parts = [
             _off(self.distortion_px, "px", "distortion "),
             _off(self.red_px, "px", "red "),
             _off(self.blue_px, "px", "blue "),
-            self._lit(_joined(*(_off(*stop) for stop in stops))),
+            self._lit(light),
             self._magnified(),
-        )
-        return f"Differences from {product}: {_joined(*parts)}"
+        ]
+        return f"Differences from {product}: {_joined(parts)}"
 
     def _lit(self, light: str) -> str:
         marked = " (mount fitted)" if "vignetting" in self.fitted else ""
@@ -68,7 +68,7 @@ def _off(value: float | None, unit: str, name: str = "") -> str:
     return "" if value is None else f"{name}{value:.2f} {unit}"
 
 
-def _joined(*parts: str) -> str:
+def _joined(parts: list[str]) -> str:
     return ", ".join(part for part in parts if part)
 
 

@@ -6,6 +6,7 @@ import dataclasses
 import itertools
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,8 +91,21 @@ class Zoom:
         return _named(with_stop(moved, stop), zoom_mm, f_number)
 
 
-def bracket(lens: Lens, zoom_mm: float) -> tuple[Position, Position, float]:
-    """Positions on both sides of a focal length, and the fraction between them."""
+class Bracket(NamedTuple):
+    """Positions on both sides of a focal length.
+
+    Attributes:
+        low, high: The positions.
+        share: Fraction of the focal length between them.
+    """
+
+    low: Position
+    high: Position
+    share: float
+
+
+def bracket(lens: Lens, zoom_mm: float) -> Bracket:
+    """Finds the positions on both sides of a focal length."""
     found = positions(lens)
     if not found:
         raise LensError(
@@ -107,8 +121,8 @@ def bracket(lens: Lens, zoom_mm: float) -> tuple[Position, Position, float]:
     mm = min(max(zoom_mm, short), long)
     for low, high in itertools.pairwise(found):
         if low.efl <= mm <= high.efl:
-            return low, high, _share(lens, low, high, mm)
-    return found[0], found[0], 0.0
+            return Bracket(low, high, _share(lens, low, high, mm))
+    return Bracket(found[0], found[0], 0.0)
 
 
 def _share(lens: Lens, low: Position, high: Position, mm: float) -> float:

@@ -185,7 +185,7 @@ def _write_linear(
     from daguerre.frame.frame import Frame
 
     from .exr import color_space
-    from .exr.write import attributes, write_parts
+    from .exr.write import ExrPart, attributes, write_parts
 
     linear = np.empty_like(pixels)
     for row in range(0, len(pixels), 64):
@@ -202,4 +202,4 @@ def _write_linear(
         header |= color_space.container_attributes()
         planes = color_space.container_planes(planes)
     frame = Frame(rgb=linear, metadata=_of_size(metadata, linear.shape[1], linear.shape[0]))
-    write_parts(path, [("picture", header, planes)], frame)
+    write_parts(path, [ExrPart("picture", header, planes)], frame)

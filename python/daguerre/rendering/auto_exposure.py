@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure
@@ -44,6 +44,20 @@ PROGRAM_S, PROGRAM_STOP = 1 / 60, 16.0
 _STEPS = 4
 #: Maximum number of further pictures after the meter chose a stop, as vignetting may differ there.
 _LOOKS = 2
+
+
+class _Choice(NamedTuple):
+    """Exposure by a mode.
+
+    Attributes:
+        changes: Parameters of ``Camera``.
+        flags: Flags of the command line that set time and stop.
+        lux_s: Luminance exposure of a value of 1, times the ISO.
+    """
+
+    changes: dict[str, Any]
+    flags: str
+    lux_s: float
 
 
 @dataclass(frozen=True)
@@ -134,18 +148,18 @@ class _Meter:
         """Exposure by the mode."""
         moving = "exposure_compensation" in self.camera.motion
         ev = 0.0 if moving else self.camera.exposure_compensation
-        choice: Callable[[float], tuple[dict[str, Any], str, float]] = {
+        choice: Callable[[float], _Choice] = {
             "auto": self._iso, "A": self._time, "S": self._stop, "P": self._program
         }[self.mode]  # fmt: skip
-        changes, words, got = choice(wanted_lux_s(self.luminance, ev))
-        for _ in range(_LOOKS if "f_stop" in changes else 0):
-            self.luminance = self._read(self._with(f_stop=changes["f_stop"]))
-            changes, words, got = choice(wanted_lux_s(self.luminance, ev))
-        iso = changes.get("iso", self.camera.iso)
-        told = f"--exposure manual --iso {iso:g}{words}{' --ev 0' if ev else ''}"
-        left = missing(self._ends(), got / wanted_lux_s(self.luminance, ev))
+        found = choice(wanted_lux_s(self.luminance, ev))
+        for _ in range(_LOOKS if "f_stop" in found.changes else 0):
+            self.luminance = self._read(self._with(f_stop=found.changes["f_stop"]))
+            found = choice(wanted_lux_s(self.luminance, ev))
+        iso = found.changes.get("iso", self.camera.iso)
+        told = f"--exposure manual --iso {iso:g}{found.flags}{' --ev 0' if ev else ''}"
+        left = missing(self._ends(), found.lux_s / wanted_lux_s(self.luminance, ev))
         return Chosen(
-            {"exposure": "manual", **changes},
+            {"exposure": "manual", **found.changes},
             told,
             {"exposure": self.mode, "metering": self.pattern},
             ev,
@@ -181,24 +195,21 @@ class _Meter:
     def _isos(self) -> tuple[float, float]:
         return iso_limits(self.prepared.sensor)
 
-    def _iso(self, wanted: float) -> tuple[dict[str, Any], str, float]:
+    def _iso(self, wanted: float) -> _Choice:
         lux_s = self._lux_s()
         iso = automatic_iso(wanted / lux_s, self._isos())
-        return {"iso": iso}, "", iso * lux_s
+        return _Choice({"iso": iso}, "", iso * lux_s)
 
-    def _time(self, wanted: float) -> tuple[dict[str, Any], str, float]:
+    def _time(self, wanted: float) -> _Choice:
         now = shutter_time(self.prepared.camera)
         per_s = self.prepared.camera.iso * self._lux_s() / now
         time, words = _short(min(max(wanted / per_s, TIMES_S[0]), TIMES_S[1]))
-        return {"shutter_time": time}, f" --shutter {words}", per_s * time
+        return _Choice({"shutter_time": time}, f" --shutter {words}", per_s * time)
 
-    def _stop(self, wanted: float) -> tuple[dict[str, Any], str, float]:
+    def _stop(self, wanted: float) -> _Choice:
         stop = self._stop_for(wanted, (self._widest(), MOST_STOP))
-        return (
-            {"f_stop": stop},
-            f" --f-stop {stop:g}",
-            self.prepared.camera.iso * self._lux_s(f_stop=stop),
-        )
+        lux_s = self.prepared.camera.iso * self._lux_s(f_stop=stop)
+        return _Choice({"f_stop": stop}, f" --f-stop {stop:g}", lux_s)
 
     def _stop_for(self, wanted: float, ends: tuple[float, float]) -> float:
         """F-stop of an exposure within its ends, to three digits."""
@@ -209,7 +220,7 @@ class _Meter:
         rounded = float(f"{stop:.3g}")
         return min(max(rounded, ends[0]), ends[1])
 
-    def _program(self, wanted: float) -> tuple[dict[str, Any], str, float]:
+    def _program(self, wanted: float) -> _Choice:
         camera, widest = self.prepared.camera, self._widest()
         open_lux = camera.iso * self._lux_s(f_stop=widest) / shutter_time(camera)
         stops = math.log2(open_lux * PROGRAM_S / wanted)  # above 0: more light than it needs
@@ -218,7 +229,7 @@ class _Meter:
         per_s = camera.iso * self._lux_s(f_stop=stop) / shutter_time(camera)
         time, words = _short(min(max(wanted / per_s, TIMES_S[0]), TIMES_S[1]))
         changes = {"shutter_time": time, "f_stop": stop}
-        return changes, f" --shutter {words} --f-stop {stop:g}", per_s * time
+        return _Choice(changes, f" --shutter {words} --f-stop {stop:g}", per_s * time)
 
     def _now(self) -> float:
         stop = self.prepared.setup.lens.f_stop

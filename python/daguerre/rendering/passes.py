@@ -44,7 +44,7 @@ from daguerre.files.value import BriefRecord
 from daguerre.frame.world import in_world
 from daguerre.pictures.exr.layout import Layout, read_layouts
 from daguerre.pictures.exr.parts import PartReader
-from daguerre.pictures.exr.write import Channels, channels, jsonable, write_parts
+from daguerre.pictures.exr.write import ExrPart, channels, jsonable, write_parts
 from daguerre.pictures.exr.write import header as picture_header
 
 from .adaptive import Round
@@ -131,8 +131,8 @@ def write_pass(path: str | os.PathLike[str], frame: Frame, drawn: Pass) -> None:
         header["daguerre:round"] = json.dumps(facts)
         begin, count = drawn.round.begin, drawn.round.count
         planes[ROUND] = np.stack([begin, count, 0 * begin, 0 * begin], axis=2)
-    parts: list[tuple[str, dict[str, Any], Channels]] = [
-        ("beauty", picture_header(frame), channels(frame)),
+    parts = [
+        ExrPart("beauty", picture_header(frame), channels(frame)),
         *(_words_part(frame, name, header, words) for name, words in planes.items()),
     ]
     write_parts(path, parts, frame)
@@ -140,13 +140,13 @@ def write_pass(path: str | os.PathLike[str], frame: Frame, drawn: Pass) -> None:
 
 def _words_part(
     frame: Frame, name: str, header: dict[str, Any], words: NDArray[np.uint32]
-) -> tuple[str, dict[str, Any], Channels]:
+) -> ExrPart:
     """Words (H, W, 4 k) as a picture (H, k W) of four channels, in place."""
     height, width, count = words.shape
     corner = np.array((frame.metadata.get("crop") or (0, 0))[:2], np.int32)
     size = np.array([width * count // 4 - 1, height - 1], np.int32)
     header = {**header, "daguerre:words": count, "dataWindow": (corner, corner + size)}
-    return name, header, {"words": words.reshape(height, -1, 4)}
+    return ExrPart(name, header, {"words": words.reshape(height, -1, 4)})
 
 
 def read_pass(path: str | os.PathLike[str]) -> Pass:

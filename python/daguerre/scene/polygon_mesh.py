@@ -138,12 +138,11 @@ def mesh_of_polygons(
 def _triangles_of(polygons: Polygons, over: Over, name: str) -> tuple[Mesh, Over]:
     """Makes a mesh of polygons; vertices become several where values per corner differ."""
     where, count = polygons.where, len(polygons.positions)
-    divided = polygons.sizes, polygons.vertices, polygons.positions
     given = polygons.corner_values()
     if not given:
-        triangles = vertices_of_triangles(*divided)
+        triangles = vertices_of_triangles(polygons.sizes, polygons.vertices, polygons.positions)
         return mesh_of(polygons.positions, triangles, polygons.values, where, name), over
-    corners, _ = triangulate(*divided)
+    corners, _ = triangulate(polygons.sizes, polygons.vertices, polygons.positions)
     apart = "normals" in given and over.normals is not None  # equal now, not at other times
     every = [np.arange(len(polygons.vertices))] if apart else []
     leaders, index = weld(polygons.vertices, *given.values(), *every)

@@ -92,8 +92,8 @@ def remap(given: Arguments) -> Value:
 
 def smoothstep(given: Arguments) -> Value:
     """Rises smoothly from 0 to 1 between two values."""
-    values = given.value("in", 0.0), given.value("low", 0.0), given.value("high", 1.0)
-    return given.context.math.each(_smooth, *values)
+    value, low, high = given.value("in", 0.0), given.value("low", 0.0), given.value("high", 1.0)
+    return given.context.math.each(_smooth, value, low, high)
 
 
 def _smooth(value: Numbers, low: Numbers, high: Numbers) -> Numbers:

@@ -98,8 +98,9 @@ def _along(values: NDArray[np.float32], axis: int, after: int) -> NDArray[np.flo
     if values.shape[axis] == after:
         return values
     shape = (-1, 1, 1) if axis == 0 else (-1, 1)
-    taps = zip(*_taps(values.shape[axis], after), strict=True)
-    parts = (values.take(places, axis) * weights.reshape(shape) for places, weights in taps)
+    places, weights = _taps(values.shape[axis], after)
+    taps = zip(places, weights, strict=True)
+    parts = (values.take(place, axis) * weight.reshape(shape) for place, weight in taps)
     return np.asarray(reduce(np.add, parts), np.float32)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, floor
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,34 @@ from .hashes import Numbers
 #: Weight under which octaves of a hybrid add nothing.
 _LEAST_WEIGHT = np.float32(0.001)
 ONE = np.float32(1)
+
+
+class Octave(NamedTuple):
+    """Octave of a pattern.
+
+    Attributes:
+        share: Share that counts.
+        size: Factor on its size.
+        frequency: Factor on its frequency.
+    """
+
+    share: np.float32
+    size: Any
+    frequency: Any
+
+
+class NoiseOctave(NamedTuple):
+    """Octave of gradient noise.
+
+    Attributes:
+        share: Share that counts.
+        size: Factor on its size.
+        noise: Noise, shape (N,).
+    """
+
+    share: np.float32
+    size: Any
+    noise: Array
 
 
 @dataclass(frozen=True)
@@ -41,20 +69,20 @@ class Octaves:
     gain: Numbers = 1.0
     normalize: bool = True
 
-    def noises(self, point: Point) -> Iterator[tuple[np.float32, Any, Array]]:
-        """Share that counts, size and noise of each octave."""
-        for share, size, scale in octaves_of(self.detail, self.roughness, self.lacunarity):
-            yield share, size, signed_noise([axis * scale for axis in point])
+    def noises(self, point: Point) -> Iterator[NoiseOctave]:
+        """Noise of each octave."""
+        for share, size, frequency in octaves_of(self.detail, self.roughness, self.lacunarity):
+            noise = signed_noise([axis * frequency for axis in point])
+            yield NoiseOctave(share, size, noise)
 
 
-def octaves_of(
-    detail: float, roughness: Numbers, lacunarity: Numbers
-) -> Iterator[tuple[np.float32, Any, Any]]:
-    """Share that counts, size and frequency of each octave; the share of the last may be a part."""
+def octaves_of(detail: float, roughness: Numbers, lacunarity: Numbers) -> Iterator[Octave]:
+    """Octaves; the share of the last may be a part."""
     size: Numbers = ONE
     scale: Numbers = ONE
     for i in range(ceil(detail) + 1):
-        yield ONE if i <= floor(detail) else np.float32(detail - floor(detail)), size, scale
+        share = ONE if i <= floor(detail) else np.float32(detail - floor(detail))
+        yield Octave(share, size, scale)
         size = size * roughness
         scale = scale * lacunarity
 

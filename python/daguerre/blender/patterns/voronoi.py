@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cells import Array, Grid, Metric, Point, euclidean, square
-from .fractals import ONE, octaves_of
+from .fractals import ONE, Octave, octaves_of
 from .hashes import Numbers
 
 #: Square of the distance between two points below which they have no edge.
@@ -47,8 +47,8 @@ class Cells:
     lacunarity: Numbers = 2.0
     normalize: bool = False
 
-    def octaves(self) -> Iterator[tuple[np.float32, Any, Any]]:
-        """Share that counts, size and frequency of each octave."""
+    def octaves(self) -> Iterator[Octave]:
+        """Octaves of the pattern."""
         return octaves_of(self.detail, self.roughness, self.lacunarity)
 
     def widest(self, axes: int) -> Numbers:

@@ -103,7 +103,9 @@ def brightness(given: Arguments) -> Value:
         lambda color, bright, contrast: np.maximum(
             (1 + contrast) * color + bright - contrast / 2, 0
         ),
-        *(sockets.value("Color"), sockets.one("Bright"), sockets.one("Contrast")),
+        sockets.value("Color"),
+        sockets.one("Bright"),
+        sockets.one("Contrast"),
     )
 
 

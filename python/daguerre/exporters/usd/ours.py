@@ -49,8 +49,8 @@ def write_ours(output: Output) -> None:
         if _is_told(output, row):
             output.follow(PREFIX + row.name, row.type, _value(row), row.field)
     known = (*IDEAL, *lenses.names())
-    output.set(*_named(output, LENS, camera.lens, known, lenses.load))
-    output.set(*_named(output, SENSOR, camera.sensor, sensors.names(), sensors.load))
+    _write_named(output, LENS, camera.lens, known, lenses.load)
+    _write_named(output, SENSOR, camera.sensor, sensors.names(), sensors.load)
     for field, (name, _) in ARRAYS.items():
         output.set(PREFIX + name, "double[]", getattr(camera, field))
     for field, name in PICTURES.items():
@@ -84,23 +84,25 @@ def _is_told(output: Output, row: Plain) -> bool:
     return row.field in camera.motion or (value is not None and value != default)
 
 
-def _named(
+def _write_named(
     output: Output, name: str, value: Any, known: Collection[str], load: Callable[[str], Any]
-) -> tuple[str, str, Any]:
-    """Attribute of a lens or a sensor: a name of the library, or a file in the stage's folder."""
-    place = f"{PREFIX}{name}:name"
+) -> None:
+    """Writes a lens or a sensor: a name of the library, or a file in the stage's folder."""
     if value is None:
-        return place, "string", None
+        output.set(f"{PREFIX}{name}:name", "string", None)
+        return
     if not isinstance(value, str | Path):
         value = _found(value, name, load)
     if str(value) in known:
-        return place, "string", str(value)
+        output.set(f"{PREFIX}{name}:name", "string", str(value))
+        return
     path = Path(value).resolve()
     if not path.is_relative_to(output.folder):
         raise UsageError(
             f"camera: {name}: must be in the folder of the stage, {output.folder}, got {path}"
         )
-    return f"{PREFIX}{name}:file", "asset", f"./{path.relative_to(output.folder).as_posix()}"
+    relative = path.relative_to(output.folder).as_posix()
+    output.set(f"{PREFIX}{name}:file", "asset", f"./{relative}")
 
 
 def _found(value: Lens | sensors.Sensor, name: str, load: Callable[[str], Any]) -> str:

@@ -6,7 +6,7 @@ Source: glTF 2.0 specification, chapter 3.6.2; KHR_mesh_quantization.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,20 @@ _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "
 _MAX_ZEROS = 1 << 26
 #: Limit of all compressed bufferViews of a file together, unpacked.
 _MAX_UNPACKED_BYTES = 8 << 30
+
+
+class Kind(NamedTuple):
+    """Kind of an accessor.
+
+    Attributes:
+        type: Type, such as ``VEC3``.
+        component_type: Component type, such as 5126 (float).
+        normalized: Whether integers are normalised.
+    """
+
+    type: str
+    component_type: int
+    normalized: bool
 
 
 class _View:
@@ -76,11 +90,11 @@ class Accessors:
         """Bytes of the bufferView that ``use`` names."""
         return self._views[use.index(len(self._views), "bufferViews")].data
 
-    def kind(self, use: Item) -> tuple[str, int, bool]:
-        """Type, component type and normalisation of the accessor that ``use`` names."""
+    def kind(self, use: Item) -> Kind:
+        """Kind of the accessor that ``use`` names."""
         item = self._items[self.index(use)]
         normalized = item.get("normalized")
-        return (
+        return Kind(
             item.need("type").choice(_WIDTHS),
             item.need("componentType").choice(_COMPONENTS),
             normalized is not None and normalized.flag(),

@@ -114,7 +114,7 @@ class Poses(Value):
             local = self._locals(below, times)
             world = local if world is None else world @ local
             self._tree.check_size(below, world)
-            self._keep((below, moment), world)
+            self._keep(below, moment, world)
         assert world is not None
         return world
 
@@ -129,12 +129,12 @@ class Poses(Value):
         )
         return compose(*parts)
 
-    def _keep(self, key: tuple[int, bytes], world: Matrix) -> None:
+    def _keep(self, node: int, moment: bytes, world: Matrix) -> None:
         most = max(min(_MAX_KNOWN, _MAX_MATRICES * 16 // max(world.size, 16)), 1)
         with suppress(KeyError):  # another thread may have emptied it
             while len(self._known) >= most:
                 self._known.popitem(last=False)
-        self._known[key] = world
+        self._known[node, moment] = world
 
     def shown(self, node: int, time: float) -> bool:
         """Whether a node with changing visibility is shown at a time, s."""

@@ -165,7 +165,7 @@ class Samplers:
 
 
 def _keys(use: Item, accessors: Accessors) -> FloatArray:
-    if accessors.kind(use)[1] != 5126:
+    if accessors.kind(use).component_type != 5126:
         use.fail("wrong accessor type: wanted key times of component type 5126 (float)")
     keys = accessors.floats(use, ("SCALAR",), "key time")[:, 0].astype(np.float64)
     falls = np.flatnonzero(np.diff(keys) <= 0)

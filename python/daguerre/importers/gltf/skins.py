@@ -120,7 +120,7 @@ class Skins:
         self._bind[index] = still if bind is None else self._inverse_bind(bind, len(joints))
 
     def _inverse_bind(self, use: Item, count: int) -> NDArray[np.float64]:
-        if self._accessors.kind(use)[1] != 5126:
+        if self._accessors.kind(use).component_type != 5126:
             use.fail("wrong accessor type: wanted matrices of component type 5126 (float)")
         values = self._accessors.floats(use, ("MAT4",), "matrix")
         if len(values) < count:

@@ -25,7 +25,7 @@ from daguerre.errors import InputError, UsageError
 from daguerre.motion.values import keys
 
 from .checked import Checked
-from .omni_models import MODEL, MODELS, OLDER, PROJECTION_TYPE, OmniModel, Source
+from .omni_models import MODEL, MODELS, OLDER, PROJECTION_TYPE, OmniModel
 
 #: Number of coefficients of Daguerre's model for the fisheyes that say no focal length.
 _ANGLES = 4
@@ -99,10 +99,10 @@ class _Distortion:
 
     def at(self, code: Usd.TimeCode) -> Projection:
         """Projection at a time code."""
-        width, height = (self._whole(source, code) for source in self.model.size)
-        x, y = (self._value(source, code) - 0.5 for source in self.model.center)
-        terms = [self._value((name, -1), code) for name in self.model.terms]
-        focal = tuple(self._above(source, code) for source in self.model.focal)
+        width, height = (self._whole(name, part, code) for name, part in self.model.size)
+        x, y = (self._value(name, part, code) - 0.5 for name, part in self.model.center)
+        terms = [self._value(name, -1, code) for name in self.model.terms]
+        focal = tuple(self._above(name, part, code) for name, part in self.model.focal)
         name, length, values = self._named(terms, width, code)
         pair = (focal[0], focal[1]) if focal else (length, length)
         try:
@@ -125,13 +125,12 @@ class _Distortion:
             if not slope > 0:
                 self.read.fail(self.model.terms[1], "radians per px, above 0", f"{slope:g}")
             return "ftheta", 1 / slope, [k / slope**i for i, k in enumerate(terms) if i > 1]
-        ratio = self._above(("focalLength", -1), code) / self._above(
-            ("horizontalAperture", -1), code
-        )
+        focal_length = self._above("focalLength", -1, code)
+        ratio = focal_length / self._above("horizontalAperture", -1, code)
         return "kannala_brandt", ratio * width, terms[:_ANGLES]
 
-    def _value(self, source: Source, code: Usd.TimeCode) -> float:
-        name, part = source
+    def _value(self, name: str, part: int, code: Usd.TimeCode) -> float:
+        """Number of an attribute, or of a part of its pair; -1: it has one number."""
         value = self.read.at(name, code)
         if value is None:
             value = self.model.defaults.get(name, (0.0,))
@@ -141,16 +140,16 @@ class _Distortion:
             self.read.fail(name, f"{index + 1} numbers", value)
         return self.read.finite(name, parts[index])
 
-    def _above(self, source: Source, code: Usd.TimeCode) -> float:
-        value = self._value(source, code)
+    def _above(self, name: str, part: int, code: Usd.TimeCode) -> float:
+        value = self._value(name, part, code)
         if not value > 0:
-            self.read.fail(source[0], "a number above 0", f"{value:g}")
+            self.read.fail(name, "a number above 0", f"{value:g}")
         return value
 
-    def _whole(self, source: Source, code: Usd.TimeCode) -> int:
-        value = self._value(source, code)
+    def _whole(self, name: str, part: int, code: Usd.TimeCode) -> int:
+        value = self._value(name, part, code)
         if not (1 <= value <= 65536 and value == int(value)):
-            self.read.fail(source[0], "1 .. 65536 whole pixels", f"{value:g}")
+            self.read.fail(name, "1 .. 65536 whole pixels", f"{value:g}")
         return int(value)
 
 

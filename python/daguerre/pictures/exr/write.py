@@ -12,7 +12,7 @@ import os
 from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,6 +53,14 @@ OWN_STRINGS = (
 OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance", "plate", "world_origin")
 
 Channels = Mapping[str, NDArray[np.float32] | NDArray[np.uint32]]
+
+
+class ExrPart(NamedTuple):
+    """A part of a file."""
+
+    name: str
+    attributes: dict[str, Any]
+    channels: Channels
 
 
 def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
@@ -148,7 +156,7 @@ def write_exr(path: str | os.PathLike[str], frame: Frame) -> None:
     if color_space.is_container(frame):
         facts |= color_space.container_attributes()
         planes = color_space.container_planes(planes)
-    write_parts(path, [("beauty", facts, planes)], frame)
+    write_parts(path, [ExrPart("beauty", facts, planes)], frame)
 
 
 def as_exr(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
@@ -156,10 +164,8 @@ def as_exr(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> No
     write_exr(path, frame)
 
 
-def write_parts(
-    path: str | os.PathLike[str], parts: list[tuple[str, dict[str, Any], Channels]], frame: Frame
-) -> None:
-    """Writes parts (name, attributes, channels) that share the windows of ``frame``.
+def write_parts(path: str | os.PathLike[str], parts: list[ExrPart], frame: Frame) -> None:
+    """Writes parts that share the windows of ``frame``.
 
     Raises:
         OutputError: The file cannot be written; no partial file is left.
@@ -179,21 +185,17 @@ def write_planes(
         OutputError: The file cannot be written; no partial file is left.
     """
     windows = _windows(metadata, next(iter(planes.values())).shape)
-    _write(path, [("map", dict(header), planes)], windows)
+    _write(path, [ExrPart("map", dict(header), planes)], windows)
 
 
-def _write(
-    path: str | os.PathLike[str],
-    parts: list[tuple[str, dict[str, Any], Channels]],
-    windows: dict[str, Any],
-) -> None:
+def _write(path: str | os.PathLike[str], parts: list[ExrPart], windows: dict[str, Any]) -> None:
     import OpenEXR
 
     storage = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     with atomic_path(path) as temp:
         exr_parts = [
-            OpenEXR.Part(storage | windows | header, dict(planes), name)
-            for name, header, planes in parts
+            OpenEXR.Part(storage | windows | part.attributes, dict(part.channels), part.name)
+            for part in parts
         ]
         try:
             with threads(path), OpenEXR.File(exr_parts) as file:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,10 +68,22 @@ def polynomial(terms: Terms, r2: FloatArray) -> FloatArray:
     return np.asarray(np.maximum(1 + r2 * (k1 + r2 * (k2 + r2 * k3)), 1e-3))
 
 
-def fitted(
-    light: FloatArray, r2: FloatArray, more: FloatArray | None = None
-) -> tuple[Terms, float, FloatArray]:
-    """Fits the polynomial; returns it, the relative RMS residual and the coefficients of ``more``.
+class FalloffFit(NamedTuple):
+    """Fit of the polynomial.
+
+    Attributes:
+        terms: The polynomial.
+        residual: Relative RMS residual.
+        more: Coefficients of other functions, shape (M,).
+    """
+
+    terms: Terms
+    residual: float
+    more: FloatArray
+
+
+def fitted(light: FloatArray, r2: FloatArray, more: FloatArray | None = None) -> FalloffFit:
+    """Fits the polynomial.
 
     Args:
         light: Any scale, shape (N,).
@@ -83,7 +96,7 @@ def fitted(
     found = np.linalg.lstsq(columns, light, rcond=None)[0]
     rest = float(np.sqrt(np.mean((light - columns @ found) ** 2)) / found[0])
     k1, k2, k3 = (float(found[k] / found[0]) for k in (1, 2, 3))
-    return (k1, k2, k3), rest, np.asarray(found[4:] / found[0])
+    return FalloffFit((k1, k2, k3), rest, np.asarray(found[4:] / found[0]))
 
 
 def falloff_of(flat: Photograph) -> Falloff:

@@ -41,8 +41,9 @@ def with_grain(pixels: Floats, grain: Grain, seed: int, corner: tuple[int, int] 
 def _noise(grain: Grain, shape: tuple[int, int], seed: int, corner: tuple[int, int]) -> Floats:
     """Normal noise of variance 1 with the given spectra, shape (H, W, 3)."""
     (height, width), (x, y) = shape, corner
-    place = (x - REACH, y - REACH, width + 2 * REACH, height + 2 * REACH)
-    white = np.stack([grain_pattern(*place, _WHITE, seed, k) for k in range(3)], axis=2)
+    x, y, width, height = x - REACH, y - REACH, width + 2 * REACH, height + 2 * REACH
+    patterns = [grain_pattern(x, y, width, height, _WHITE, seed, k) for k in range(3)]
+    white = np.stack(patterns, axis=2)
     made = convolve(white, kernels(grain))
     return np.ascontiguousarray(made[REACH:-REACH, REACH:-REACH])
 

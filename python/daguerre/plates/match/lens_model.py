@@ -53,4 +53,4 @@ def lens_falloff(bench: Bench, sensor_size: tuple[float, float]) -> Terms:
     corner = 0.5 * math.hypot(*sensor_size)
     heights = np.linspace(0, min(corner, 1.05 * bench.field_mm), _HEIGHTS)
     light = relative_illumination(bench, heights, grid=_GRID).relative
-    return fitted(np.asarray(light), (heights / corner) ** 2)[0]
+    return fitted(np.asarray(light), (heights / corner) ** 2).terms

@@ -95,7 +95,7 @@ def _rows(
         total += weight
         hidden &= np.degrees(angle) > 180 - one.ball.unseen_deg
     shape = (count, fine, width, fine)
-    light = (sums / total[:, None]).reshape(*shape, 3).mean(axis=(1, 3))
+    light = (sums / total[:, None]).reshape((*shape, 3)).mean(axis=(1, 3))
     share = (over / total).reshape(shape).mean(axis=(1, 3))
     return light.astype(np.float32), share > 0.25, hidden.reshape(shape).mean(axis=(1, 3)) > 0.5
 

@@ -47,11 +47,11 @@ class _Grain(Step):
     def apply(self, band: Band, rows: Rows) -> Band:
         image = band.image.copy()
         height, width = image.shape[:2]
-        place = (self._corner[0], self._corner[1] + rows.begin, width, height)
+        x, y = self._corner[0], self._corner[1] + rows.begin
         pattern = None
         for k in range(self._colors):
             if pattern is None or self._each:
-                pattern = grain_pattern(*place, self._radius, self._seed, k)
+                pattern = grain_pattern(x, y, width, height, self._radius, self._seed, k)
             image[:, :, k] *= self._factor(image[:, :, k], pattern)
         return band.with_image(image)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -26,6 +28,20 @@ MAX_FACES = 1 << 22
 _MAKERS: dict[str, Scheme] = {
     "catmull-clark": CatmullClark(), "loop": Loop(), "bilinear": Bilinear()
 }  # fmt: skip
+
+
+class _Output(NamedTuple):
+    """Refined faces that are shown.
+
+    Attributes:
+        parents: Control face of each.
+        vertices: Vertices of their corners.
+        used: Vertices that they use; None: all.
+    """
+
+    parents: IntArray
+    vertices: IntArray
+    used: IntArray | None
 
 
 class Refiner(Value):
@@ -76,18 +92,18 @@ class Refiner(Value):
     @property
     def vertices(self) -> IntArray:
         """Vertex of each refined corner, shape (C',)."""
-        return self._output[1]
+        return self._output.vertices
 
     @property
     def count(self) -> int:
         """Number of refined vertices."""
-        used = self._output[2]
+        used = self._output.used
         return self._main.last.count if used is None else len(used)
 
     @property
     def parents(self) -> IntArray:
         """Control face of each refined face, rising, shape (F',)."""
-        return self._output[0]
+        return self._output.parents
 
     def surface(self, points: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Limit of the surface at refined vertices.
@@ -198,20 +214,19 @@ class Refiner(Value):
         return None if kept.all() else kept[self._parents]
 
     @cached_property
-    def _output(self) -> tuple[IntArray, IntArray, IntArray | None]:
-        """Parents, vertices of corners, and used vertices; None: all."""
+    def _output(self) -> _Output:
         vertices, kept = self._main.last.vertices, self._kept
         if kept is None:
-            return self._parents, vertices, None
+            return _Output(self._parents, vertices, None)
         size = 4 if self._scheme.quads else 3
         shown = vertices.reshape(-1, size)[kept].reshape(-1)
         used = np.zeros(self._main.last.count, bool)
         used[shown] = True
         number = np.cumsum(used) - 1
-        return self._parents[kept], number[shown], np.flatnonzero(used)
+        return _Output(self._parents[kept], number[shown], np.flatnonzero(used))
 
     def _used(self, values: FloatArray) -> FloatArray:
-        used = self._output[2]
+        used = self._output.used
         return values if used is None else values.take(used, axis=0)
 
     def _values(self, values: ArrayLike, what: str, columns: int | None = None) -> FloatArray:
