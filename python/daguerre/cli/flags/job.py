@@ -188,11 +188,7 @@ class JobFlags(ClusterFlags):
     ] = "60"
     preview: Annotated[
         bool,
-        option(
-            "--preview",
-            help="Show the picture while it is drawn: in the terminal if it can (Kitty, iTerm2, "
-            "Sixel), else in OUT.preview.png.",
-        ),
+        option("--preview", help="Show the picture in OUT.preview.png while it is drawn."),
     ] = False
     quiet: Annotated[bool, option("--quiet", "-q", help="Print errors only.")] = False
     json_progress: Annotated[

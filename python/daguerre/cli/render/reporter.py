@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from daguerre.cli import console, progress
 from daguerre.rendering.job import shown
 from daguerre.rendering.progress import Status
 from daguerre.rendering.reporter import Finished, PreviewPicture, Reporter, Stopped
 
-if TYPE_CHECKING:
-    from daguerre.cli.preview.preview import Preview
-    from daguerre.cli.preview.screen import Screen
+from .preview import Preview
 
 
 class ConsoleReporter(Reporter):
@@ -31,12 +28,7 @@ class ConsoleReporter(Reporter):
     def __init__(self, *, quiet: bool, as_json: bool, stats: bool, preview: bool = False) -> None:
         self._quiet, self._as_json, self._stats = quiet, as_json, stats
         self._shown = progress.Silent()
-        self._preview: Preview | None = None
-        self._screen: Screen | None = None
-        if preview:
-            from daguerre.cli.preview.preview import Preview
-
-            self._preview = Preview(in_terminal=not (quiet or as_json))
+        self._preview = Preview() if preview else None
 
     @property
     def previews(self) -> bool:
@@ -44,30 +36,16 @@ class ConsoleReporter(Reporter):
         return self._preview is not None and self._preview.works
 
     def preview(self, look: PreviewPicture) -> None:
-        """Shows a preview, in the terminal or in a file."""
-        if self._preview is None or not self._preview.works:
-            return
-        if self._preview.way is not None and self._screen is None:
-            from daguerre.cli.preview.screen import Screen
-
-            self._screen = Screen(self._preview.way, sys.stderr)
-            self._screen.start()  # lines of the set-up are said below it
-        self._preview.show(look, self._screen)
+        """Shows a preview in a file."""
+        if self._preview is not None and self._preview.works:
+            self._preview.show(look)
 
     @contextmanager
     def drawing(self, facts: Mapping[str, Any]) -> Iterator[None]:
         """Shows progress of a picture."""
-        which = dict(facts)
-        if self._screen is not None:
-            self._screen.which = progress.named(which)
-            self._shown = self._screen
-        else:
-            self._shown = progress.choose(quiet=self._quiet, as_json=self._as_json, which=which)
-        try:
-            with self._shown:
-                yield
-        finally:
-            self._screen = None
+        self._shown = progress.choose(quiet=self._quiet, as_json=self._as_json, which=dict(facts))
+        with self._shown:
+            yield
 
     def progress(self, status: Status) -> None:
         """Shows the progress."""

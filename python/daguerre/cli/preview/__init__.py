@@ -1,1 +1,0 @@
-"""Previews of pictures that are being drawn, in a terminal or in a file."""
