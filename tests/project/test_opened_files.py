@@ -9,7 +9,6 @@ PACKAGE = Path(__file__).parents[2] / "python" / "daguerre"
 #: Other files, each of the package itself, of the system, or just written by the same function.
 OTHERS = {
     "cluster/store.py",  # the worker's own cache
-    "cli/completion/installing.py",  # the shell's start file, which is changed
     "compiled.py",  # /proc/cpuinfo
     "files/reading.py",  # the place
     "frame/shown.py",  # a temporary picture

@@ -49,7 +49,7 @@ GROUPS = {
         "worker": Command(".cluster", "Start a worker of a cluster."),
     },
     "This program": {
-        "completion": Command(".completion.command", "Complete commands by TAB in your shell."),
+        "completion": Command(".completion.command", "Print a script that completes by TAB."),
         "version": Command(".version", "Print the version and the libraries in use."),
     },
 }

@@ -1,43 +1,39 @@
-"""``daguerre completion``: the script of a shell, installed, removed or printed."""
+"""``daguerre completion``: prints the script of a shell."""
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from daguerre.cli import console
-from daguerre.cli.flags.groups import option
-from daguerre.errors import UsageError
+from daguerre.errors import UsageError, suggest
 
-from .installing import SHELLS, install, of_user, remove, script
+SHELLS = ("bash", "zsh", "fish")
+SCRIPTS = Path(__file__).parent / "scripts"
 
 
 def completion(
     shell: Annotated[
         str | None, typer.Argument(metavar="|".join(SHELLS), help="Shell [from $SHELL].")
     ] = None,
-    install_it: Annotated[
-        bool, option("--install", help="Install the script for you, not for other users.")
-    ] = False,
-    remove_it: Annotated[
-        bool, option("--remove", help="Remove it, and leave everything as it was.")
-    ] = False,
 ) -> int:
     """Prints a script with which a shell completes commands, flags, names and files by TAB.
 
-    --install puts it where your shell finds it; --remove takes it away again.
+    Write it into the file where your shell looks for completions.
     """
-    if install_it and remove_it:
-        raise UsageError("--install and --remove: wanted one of them, got both")
-    shell = of_user(shell)
-    if install_it:
-        for text in install(shell):
-            console.note(text)
-        console.note(f"open a new {shell} to use it")
-    elif remove_it:
-        for text in remove(shell) or [f"no completion of {shell} is installed"]:
-            console.note(text)
-    else:
-        console.show(script(shell).rstrip("\n"))
+    name = _of_user(shell)
+    console.show((SCRIPTS / f"daguerre.{name}").read_text("utf-8").rstrip("\n"))
     return 0
+
+
+def _of_user(shell: str | None) -> str:
+    """The shell that was named, else the user's shell."""
+    found = shell if shell is not None else Path(os.environ.get("SHELL", "")).name
+    if found not in SHELLS:
+        where = "completion" if shell is not None else "completion: $SHELL"
+        got = repr(found) if found else "nothing"
+        raise UsageError(f"{where}: wanted bash, zsh or fish, got {got}{suggest(found, SHELLS)}")
+    return found

@@ -1,4 +1,4 @@
-# Completion of daguerre for bash; `daguerre completion bash --install` installs it.
+# Completion of daguerre for bash; `daguerre completion bash` prints it.
 
 _daguerre() {
     COMPREPLY=()

@@ -1,4 +1,4 @@
-# Completion of daguerre for fish; `daguerre completion fish --install` installs it.
+# Completion of daguerre for fish; `daguerre completion fish` prints it.
 
 function __daguerre_complete
     set -l words (commandline -opc)

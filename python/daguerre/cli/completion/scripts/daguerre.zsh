@@ -1,5 +1,5 @@
 #compdef daguerre
-# Completion of daguerre for zsh; `daguerre completion zsh --install` installs it.
+# Completion of daguerre for zsh; `daguerre completion zsh` prints it.
 
 _daguerre() {
     local program=${~words[1]}
