@@ -103,7 +103,6 @@ def test_the_command_has_the_flags_given(file: Path) -> None:
         (["--host", "192.0.2.1", "--token", "x" * 20], "--host 192.0.2.1", 2),
         (["--lens", "no-such-lens"], "no-such-lens", 3),
         (["--f-stop", "-1"], "--f-stop", 2),
-        (["--tev", "nowhere"], "--tev", 2),
         (["--proxy", "hub.example/x"], "--proxy", 2),
         (["--port", "99999"], "--port", 2),
         (["--lens", "thin", "--flare", "auto"], "flare (--flare)", 2),

@@ -35,7 +35,6 @@ _OWN = {
     "--port": True,
     "--token": True,
     "--proxy": True,
-    "--tev": True,
     "--no-browser": False,
 }
 
@@ -114,7 +113,6 @@ def view(
         server_flags.token,
         browser=not server_flags.no_browser,
         proxies=tuple(server_flags.proxy or ()),
-        tev=server_flags.tev,
     )
     return run(stage, dials, words, listening, console.show, said)
 

@@ -54,7 +54,6 @@ from .sheet import Sheet
 from .show import Show
 from .stage import Stage
 from .switches import on_in
-from .tev import Tev
 from .watch import watch
 from .widest import opened_as_wide
 
@@ -69,7 +68,6 @@ class Hub:
             is no command line.
         loop: Event loop of the server.
         folder: Folder for saved files.
-        tev: Viewer that gets each whole picture, too; None: none.
         said: Text that pages show until something is turned.
     """
 
@@ -80,7 +78,6 @@ class Hub:
         words: Sequence[str] | None,
         loop: asyncio.AbstractEventLoop,
         folder: Path = Path(),
-        tev: Tev | None = None,
         said: str = "",
     ) -> None:
         self._stage, self._words, self._loop, self._folder = stage, words, loop, folder
@@ -89,7 +86,6 @@ class Hub:
         self._steps = Steps()
         self._first = dials
         self._show = Show(denoised=None, models=False)
-        self._tev = tev
         self._readings: dict[str, Any] = {}
         self._read = -1
         self._sheet: Sheet | None = None
@@ -108,8 +104,6 @@ class Hub:
             task.cancel()
         self._painter.close()
         self._previews.close()
-        if self._tev is not None:
-            self._tev.close()
 
     def join(self, line: Line) -> Client:
         """Lets a page in; the first one turns."""
@@ -304,8 +298,6 @@ class Hub:
 
     def publish(self, drawn: Drawn) -> None:
         """Develops a picture and sends it to the pages; may be called by any thread."""
-        if self._tev is not None:
-            self._tev.send(drawn)
         show, readings = self._show, readings_of(drawn)
         clean = denoise(drawn.frame) if show.denoised and drawn.is_one else None
         image = image_of(drawn, clean=clean, tint=show.tint)

@@ -16,7 +16,6 @@ from .dials import Dials
 from .hub import Hub
 from .server import free_socket, serve
 from .stage import Stage
-from .tev import Tev
 
 INTERRUPTED = 0  # a viewfinder ends by Ctrl-C alone
 
@@ -31,7 +30,6 @@ class Listening:
         token: Token of the page; None: a new random token.
         browser: Whether to open a browser.
         proxies: Addresses of proxies that lead here, such as ``https://hub.example``.
-        tev: Address of a tev that also gets the pictures; None: no tev.
     """
 
     host: str = "127.0.0.1"
@@ -39,7 +37,6 @@ class Listening:
     token: str | None = None
     browser: bool = True
     proxies: tuple[str, ...] = ()
-    tev: str | None = None
 
 
 def run(
@@ -74,7 +71,6 @@ def run(
         )
     for proxy in where.proxies:
         check_origin(proxy)
-    tev = None if where.tev is None else Tev(where.tev)
     sock = free_socket(where.host, where.port)
     port = sock.getsockname()[1]
     if port != where.port and where.port:
@@ -86,7 +82,5 @@ def run(
     access = Access.at(where.host, port, token, where.proxies)
     page = opened(url, say) if where.browser else contextlib.nullcontext()
     with contextlib.suppress(KeyboardInterrupt), page:
-        asyncio.run(
-            serve(sock, access, lambda loop: Hub(stage, dials, words, loop, tev=tev, said=said))
-        )
+        asyncio.run(serve(sock, access, lambda loop: Hub(stage, dials, words, loop, said=said)))
     return INTERRUPTED

@@ -13,7 +13,7 @@ PORT = 8321
 
 @dataclass(frozen=True)
 class ServerFlags:
-    """Address of the viewfinder, its token and proxies, and a tev that also gets its pictures."""
+    """Address of the viewfinder, its token and proxies."""
 
     host: Annotated[
         str, option("--host", metavar="ADDRESS", help="Address to listen on [127.0.0.1].")
@@ -32,10 +32,6 @@ class ServerFlags:
             metavar="URL",
             help="Address of a proxy that leads here, such as https://hub.example; repeatable.",
         ),
-    ] = None
-    tev: Annotated[
-        str | None,
-        option("--tev", metavar="HOST:PORT", help="Send pictures to this tev, too."),
     ] = None
     no_browser: Annotated[
         bool, option("--no-browser", help="Print the page's address, and open no browser.")
