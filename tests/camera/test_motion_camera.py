@@ -20,7 +20,6 @@ def test_a_parameter_over_time_is_kept_beside_its_value():
     moved = camera.evaluated_at(1.5)
     assert moved.focus_distance == 3.0
     assert moved.motion == camera.motion
-    assert (camera.at(1.5), camera.moved_to(1.5)) == (later, moved)  # their former names
 
 
 def test_a_camera_that_stays_is_itself():
@@ -42,7 +41,7 @@ def test_transform_and_one_of_two_numbers():
 def test_a_change_replaces_the_motion():
     camera = dg.Camera(f_stop=dg.keys([(0, 2), (1, 4)]), focal_length=dg.keys([(0, 20), (1, 40)]))
     assert camera.with_(iso=200).motion.keys() == {"f_stop", "focal_length"}
-    assert camera.with_(f_stop=8).at(1).f_stop == 8
+    assert camera.with_(f_stop=8).frozen_at(1).f_stop == 8
     wide = camera.with_(aperture_diameter=5.0)
     assert wide.motion.keys() == {"focal_length"}
     assert camera.with_(lens="double-gauss-50mm-f2").motion.keys() == {"f_stop"}

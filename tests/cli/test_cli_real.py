@@ -48,7 +48,7 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_channels_and_their_values() -> None:
-    flags = ["--spp", "16", "--aovs", "--lens", "pinhole"]
+    flags = ["--spp", "16", "--aov", "all", "--lens", "pinhole"]
     assert main(["render", "s.glb", "-o", "a.exr", *flags, *QUICK]) == 0
     planes = pixels("a.exr")
     assert set(planes) == CHANNELS

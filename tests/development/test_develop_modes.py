@@ -15,7 +15,6 @@ from daguerre.sensors.iso_speed import GREY_LX_S
 
 #: At ISO 200 a value of 1 gives a quarter of the exposure of white.
 QUARTER = GREY_LX_S / 0.18 / 200 / 4
-OLD = "exposure=EV is now ev=EV"
 FACTS = {"luminance_exposure": QUARTER, "expTime": 0.01, "isoSpeed": 200.0}
 
 
@@ -93,24 +92,6 @@ def test_night_stays_night_and_sensors_have_their_isos() -> None:
     assert black.notes == ["no light to meter, so the exposure mode is light"]
     assert black.frame.metadata["exposure"] == "light"
     assert black.frame.metadata["exposure_compensation"] == 1
-
-
-def test_the_old_name_of_compensation_warns_where_it_is_used() -> None:
-    old: Any = {"exposure": 1}
-    with pytest.warns(DeprecationWarning, match=OLD) as told:
-        picture = develop(frame(), **old)
-    assert told[0].filename == __file__
-    np.testing.assert_array_equal(picture.pixels, develop(frame(), ev=1).pixels)
-    raw = frame(size=32).expose("ideal")
-    with pytest.warns(DeprecationWarning, match=OLD) as told:
-        brighter = raw.develop(exposure=np.float32(0.5))
-    assert told[0].filename == __file__
-    np.testing.assert_array_equal(brighter.pixels, raw.develop(ev=0.5).pixels)
-    with (
-        pytest.warns(DeprecationWarning, match=OLD),
-        pytest.raises(dg.UsageError, match="got both"),
-    ):
-        develop(frame(), ev=1, **old)
 
 
 @pytest.mark.parametrize(

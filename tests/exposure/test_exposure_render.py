@@ -196,7 +196,7 @@ def test_a_raw_file_of_any_scene(capsys: pytest.CaptureFixture[str]) -> None:
 
 WRONG: dict[str, Any] = {
     "format": (["-o", "a.gif"], 2, "got '.gif'"),
-    "mode": (["-o", "a.jpg", "--exposure", "auto:sport"], 2, "did you mean 'spot'"),
+    "mode": (["-o", "a.jpg", "--exposure", "auto:spot"], 2, "--exposure: wanted light"),
     "exposure": (["-o", "a.jpg", "--exposure", "m"], 2, "--exposure: wanted light, manual, auto"),
     "meter": (["-o", "a.jpg", "--meter", "sport"], 2, "did you mean 'spot'"),
     "no spot": (["-o", "a.jpg", "--meter", "matrix:3,4"], 2, "--meter: wanted centre, spot"),

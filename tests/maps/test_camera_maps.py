@@ -234,7 +234,6 @@ def test_the_map_of_a_lens_is_that_of_the_darkroom():
     made = dg.stmaps(dg.Camera(lens="canon-ef-11-24mm-f4", f_stop=16.0, focus_distance=1.0), size)
     bench = set_up(lenses.load("canon-ef-11-24mm-f4"), f_stop=16.0, focus_m=1.0)
     model = LensDistortion(bench, 22.0)
-    assert made.sight is made.view  # its former name
     ours = made.view.setup.lens.pinhole_focal_length_mm
     assert model.focal_length_mm == pytest.approx(ours, rel=2e-4)
     focal = model.focal_length_mm / (36 / 192)

@@ -120,7 +120,6 @@ def test_rivals_take_each_other_back() -> None:
         ("light", {"iso", "f_stop", "shutter_angle"}),
         ("manual", {"iso", "f_stop", "shutter_angle"}),
         ("auto", {"f_stop", "shutter_angle"}),
-        ("auto:spot", {"f_stop", "shutter_angle"}),
         ("A", {"iso", "f_stop"}),
         ("S", {"iso", "shutter_angle"}),
         ("P", {"iso"}),

@@ -366,14 +366,6 @@ class Camera(Value):
             return self
         return replace(self, **{name: value.at(time) for name, value in self.motion.items()})
 
-    def at(self, time: float) -> Camera:
-        """Former name of :meth:`frozen_at`."""
-        return self.frozen_at(time)
-
-    def moved_to(self, time: float) -> Camera:
-        """Former name of :meth:`evaluated_at`."""
-        return self.evaluated_at(time)
-
     def with_(self, **changes: object) -> Camera:
         """Returns a copy with some parameters changed.
 

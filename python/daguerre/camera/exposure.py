@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from daguerre.color.illuminants import white_xy
 from daguerre.errors import UsageError
 
-from .exposure_mode import CHOICES, chosen_by, meter_of, mode_of, split_mode
+from .exposure_mode import CHOICES, chosen_by, meter_of, mode_of
 from .parameters import LIGHT
 from .shutter import seconds
 
@@ -128,7 +128,7 @@ def exposure_metadata(
     if own is not None and asked is not None:
         light *= (own / asked) ** 2
     return {
-        "exposure": split_mode(camera.exposure)[0],
+        "exposure": camera.exposure,
         "expTime": time,
         "aperture": asked if asked is not None else own,
         "h0": h0,
@@ -152,7 +152,7 @@ def check_exposure(camera: Camera) -> None:
     """
     LIGHT.check(camera, "camera")
     meter_of("camera: meter", camera.meter)
-    mode, _ = split_mode(mode_of("camera: exposure", camera.exposure))
+    mode = mode_of("camera: exposure", camera.exposure)
     for name in chosen_by(mode):
         if is_held(camera, name):
             raise UsageError(

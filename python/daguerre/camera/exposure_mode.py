@@ -25,17 +25,14 @@ METERS = ("centre", "spot", "matrix", "highlight")
 
 
 def mode_of(where: str, text: str) -> str:
-    """Parses an exposure mode; ``auto:PATTERN``, as before version 1.0, is valid, too.
+    """Parses an exposure mode.
 
     Raises:
         UsageError: There is no such mode.
     """
-    mode, colon, pattern = str(text).partition(":")
-    if colon and mode == "auto":
-        return f"auto:{meter_of(where, pattern)}"
     if str(text) not in MODES:
         known = {name.lower(): name for name in MODES}
-        hint = suggest(known.get(mode.lower(), mode), MODES, few=True)
+        hint = suggest(known.get(str(text).lower(), str(text)), MODES, few=True)
         raise UsageError(f"{where}: wanted {', '.join(MODES)}; got {short(text)}{hint}")
     return text
 
@@ -47,12 +44,12 @@ def retaken_mode(where: str, text: str) -> str:
         UsageError: There is no such mode, or it chooses time or stop.
     """
     wanted = f"{', '.join(RETAKEN[:-1])} or {RETAKEN[-1]}"
-    mode = mode_of(where, text)
-    if mode in AUTOMATIC and mode not in RETAKEN:
-        raise UsageError(f"{where} {mode}: the picture is already taken; wanted {wanted}")
-    if mode not in RETAKEN:
-        raise UsageError(f"{where}: wanted {wanted}; got {short(text)}")
-    return mode
+    if text in RETAKEN:
+        return text
+    if text in MODES:
+        raise UsageError(f"{where} {text}: the picture is already taken; wanted {wanted}")
+    hint = suggest(str(text).lower(), RETAKEN, few=True)
+    raise UsageError(f"{where}: wanted {wanted}; got {short(text)}{hint}")
 
 
 def meter_of(where: str, text: str) -> str:
@@ -71,24 +68,18 @@ def meter_of(where: str, text: str) -> str:
     return f"{pattern}{colon}{place}"
 
 
-def split_mode(exposure: str, meter: str = "") -> tuple[str, str]:
-    """Returns the mode and the pattern, which ``auto:PATTERN`` names, too."""
-    mode, colon, pattern = exposure.partition(":")
-    return mode, pattern if colon else meter
-
-
 def is_automatic(exposure: str) -> bool:
     """Whether a meter chooses the exposure in a mode of a camera.
 
     Raises:
         UsageError: There is no such mode.
     """
-    return split_mode(mode_of("camera: exposure", exposure))[0] in AUTOMATIC
+    return mode_of("camera: exposure", exposure) in AUTOMATIC
 
 
 def chosen_by(exposure: str) -> tuple[str, ...]:
     """Names of the parameters that a mode chooses; empty: none."""
-    return CHOSEN.get(split_mode(exposure)[0], ())
+    return CHOSEN.get(exposure, ())
 
 
 def split_pattern(pattern: str) -> tuple[str, str]:

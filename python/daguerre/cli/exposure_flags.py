@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from daguerre.camera.exposure_mode import CHOICES, chosen_by, split_mode
+from daguerre.camera.exposure_mode import CHOICES, chosen_by
 from daguerre.camera.parameters import CAMERA
 from daguerre.errors import UsageError
 
@@ -15,7 +15,7 @@ def check_mode(changes: dict[str, Any]) -> None:
     Raises:
         UsageError: The message names both.
     """
-    mode, _ = split_mode(changes.get("exposure") or "")
+    mode = changes.get("exposure") or ""
     for name in chosen_by(mode):
         if name in changes:
             raise UsageError(

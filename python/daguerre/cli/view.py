@@ -21,7 +21,7 @@ from .flags.scene_file import ScenePath
 from .flags.server import ServerFlags
 from .flags.settings import SettingsFlags
 from .flags.shutter import ShutterFlags
-from .render import checks, crops
+from .render import checks
 from .render.photograph import photograph_of
 from .render.views import Cameras
 
@@ -95,7 +95,7 @@ def view(
     scene, camera = load()
     size = cameras.size(seen, job_flags.res, scene)
     settings = checks.settings_of(job_flags, settings_flags, [], size)
-    (settings,) = crops.placed([settings], settings_flags.crop, tell=True)
+    checks.check_crop([settings])
     settings = dials.before(settings)
     photograph = photograph_of({}, None, None, settings.sampling.seed)
     if job_flags.colorspace is not None:

@@ -22,7 +22,7 @@ from daguerre.color.spectra import rgb_from_xyz
 from daguerre.errors import UsageError
 from daguerre.files import formats
 from daguerre.frame.picture import Picture
-from daguerre.parameters.keywords import takes, warn_renamed
+from daguerre.parameters.keywords import takes
 
 from .channels import XY, Channels, Demosaic, check_method, of_frame, of_raw
 from .looks import encode_table, look_of, saturation, tone_table
@@ -58,7 +58,7 @@ class Recipe:
     @classmethod
     def of(cls, **keywords: Unpack[RecipeKeywords]) -> Recipe:
         """Makes a recipe from keywords, checked; others get defaults."""
-        return cls(**DEVELOP.filled(_renamed(keywords), "develop"))
+        return cls(**DEVELOP.filled(keywords, "develop"))
 
     def __post_init__(self) -> None:
         if not isinstance(self.look, str):
@@ -141,18 +141,6 @@ def _check_camera(source: object) -> None:
             "develop: colour_space camera: wanted a raw picture, got a frame, which no sensor has "
             "taken (--sensor takes it; in Python frame.expose)"
         )
-
-
-def _renamed(keywords: Any) -> dict[str, Any]:
-    """Keywords by their present names: before version 1.0 ``exposure`` was the compensation."""
-    given = dict(keywords)
-    old = given.get("exposure")
-    if isinstance(old, int | float | np.number) and not isinstance(old, bool):
-        warn_renamed("develop: exposure=EV is now ev=EV; the old name ends with 1.2.0")
-        if "ev" in given:
-            raise UsageError("develop: wanted either ev or exposure in EV, got both")
-        given["ev"] = float(given.pop("exposure"))
-    return given
 
 
 def _exposed(source: object, recipe: Recipe) -> tuple[Any, Recipe]:

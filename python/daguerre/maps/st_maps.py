@@ -40,11 +40,6 @@ class StMaps:
     view: RectifiedView
     overscan: Overscan = NONE
 
-    @property
-    def sight(self) -> RectifiedView:
-        """Former name of ``view``."""
-        return self.view
-
     @cached_property
     def undistort(self) -> Image:
         """Map that makes the undistorted picture: s and t in the camera's picture of each pixel.

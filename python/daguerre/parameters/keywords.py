@@ -7,8 +7,6 @@ Type checkers read a TypedDict, the type of the function's ``**keywords``. ``hel
 from __future__ import annotations
 
 import inspect
-import sys
-import warnings
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
@@ -64,11 +62,3 @@ def with_rows(text: str | None, rows: Rows, names: Iterable[str]) -> str | None:
     line = next(line for line in text.splitlines() if "{keywords}" in line)
     indent = line[: len(line) - len(line.lstrip())]
     return text.replace(line, attributes(rows, names, indent).rstrip("\n"))
-
-
-def warn_renamed(text: str) -> None:
-    """Emits a DeprecationWarning at the line outside of the package that uses an old name."""
-    depth, frame = 2, sys._getframe(1)
-    while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == "daguerre":
-        depth, frame = depth + 1, frame.f_back
-    warnings.warn(text, DeprecationWarning, stacklevel=depth)

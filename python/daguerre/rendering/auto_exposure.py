@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure
-from daguerre.camera.exposure_mode import LIGHT, split_mode, split_pattern
+from daguerre.camera.exposure_mode import LIGHT, split_pattern
 from daguerre.camera.shutter import shutter_time
 from daguerre.errors import UsageError
 from daguerre.exposure.auto_iso import automatic_iso, iso_limits
@@ -130,7 +130,7 @@ class _Meter:
     ) -> None:
         check_exposure(camera)
         self.look = look
-        self.mode, self.pattern = split_mode(camera.exposure, camera.meter)
+        self.mode, self.pattern = camera.exposure, camera.meter
         self.scene, self.camera = scene, camera.with_(exposure="manual")
         whole = settings.film.resolution
         scale = SIDE / max(whole)

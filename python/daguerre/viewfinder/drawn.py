@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from daguerre.camera.exposure_mode import RETAKEN, split_mode
+from daguerre.camera.exposure_mode import RETAKEN
 from daguerre.frame.frame import Frame
 from daguerre.rendering.session import Session
 
@@ -51,7 +51,7 @@ class PictureRequest:
     @property
     def _is_lit(self) -> bool:
         """Whether its light is known, as no meter chooses the time or the stop."""
-        return split_mode(self.shot.camera.exposure)[0] in RETAKEN
+        return self.shot.camera.exposure in RETAKEN
 
 
 @dataclass(frozen=True)

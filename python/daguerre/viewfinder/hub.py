@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from daguerre.camera.exposure_mode import chosen_by, split_mode
+from daguerre.camera.exposure_mode import chosen_by
 from daguerre.camera.ideal import IDEAL
 from daguerre.errors import DaguerreError, UsageError
 from daguerre.files import extras
@@ -269,7 +269,7 @@ class Hub:
 
     def _state(self) -> dict[str, Any]:
         camera = self._shot.camera
-        mode, pattern = split_mode(camera.exposure, camera.meter)
+        mode, pattern = camera.exposure, camera.meter
         return {
             "state": {
                 "turn": self.number,

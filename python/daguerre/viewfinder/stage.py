@@ -9,7 +9,7 @@ from typing import Any
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure, is_held
-from daguerre.camera.exposure_mode import CHOICES, chosen_by, is_automatic, split_mode
+from daguerre.camera.exposure_mode import CHOICES, chosen_by, is_automatic
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.rendering.backdrop import shows_plate
 from daguerre.rendering.light_plan import check_light
@@ -165,7 +165,7 @@ def _check_mode(camera: Camera, turned: Collection[str]) -> None:
     Raises:
         UsageError: A setting that the mode chooses is fixed.
     """
-    mode, _ = split_mode(camera.exposure)
+    mode = camera.exposure
     for name in chosen_by(mode):
         if name not in turned and is_held(camera, name):
             raise UsageError(
@@ -181,7 +181,7 @@ def _check_shown(shot: Shot) -> None:
     Raises:
         UsageError: The picture is developed, though it has a tone curve or a plate that cannot be.
     """
-    mode, _ = split_mode(shot.camera.exposure)
+    mode = shot.camera.exposure
     if not shot.photograph.develops({"exposure": mode, "white_balance": shot.camera.white_balance}):
         return
     if shot.tone != "srgb":

@@ -54,7 +54,6 @@ class JobFlags(ClusterFlags):
             panel=TRUTH,
         ),
     ] = None
-    aovs: Annotated[bool, option("--aovs", help="Short for --aov all.", panel=TRUTH)] = False
     coco: Annotated[
         Path | None,
         option(

@@ -6,6 +6,7 @@ import os
 from typing import Any
 
 from daguerre import units as q
+from daguerre.camera.overscan import check_overscan as overscan_of
 from daguerre.cli.flags.job import JobFlags
 from daguerre.cli.flags.map import MapFlags
 from daguerre.cli.flags.settings import SettingsFlags
@@ -14,7 +15,11 @@ from daguerre.errors import UsageError, suggest
 from daguerre.frame.aovs import BY_NAME, EXACT_ONLY, Source, names_of
 from daguerre.rendering.output import DISPARITY, EXPOSED, Output
 from daguerre.rendering.parameters import TABLE
+from daguerre.rendering.pixels import crop_within
 from daguerre.rendering.settings import RenderSettings
+
+#: An edge beyond any picture, px.
+_FAR = 1 << 31
 
 
 def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[str]:
@@ -30,10 +35,9 @@ def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[st
     tone = flags.tone
     if tone not in TONES:
         raise UsageError(f"--tone: wanted {' or '.join(TONES)}; got {tone!r}{suggest(tone, TONES)}")
-    groups = _groups(flags.aov or [], everything=flags.aovs)
+    groups = _groups(flags.aov or [])
     drawn = (
         flags.aov,
-        flags.aovs,
         flags.samples,
         "noise" in rows.given(),
         flags.denoise,
@@ -118,6 +122,14 @@ def settings_of(
     return rows.settings(**more)
 
 
+def check_crop(settings: list[RenderSettings]) -> None:
+    """Checks that a crop lies in each picture and its overscan, as far as they are known yet."""
+    for film in (one.film for one in settings):
+        beside = overscan_of(film.overscan, film.resolution, "--overscan")
+        region = (-_FAR, -_FAR, _FAR, _FAR) if beside is None else beside.region(film.resolution)
+        crop_within(film.crop, region, "--crop")
+
+
 def check_overscan(flags: JobFlags, settings: RenderSettings) -> None:
     """Checks that overscan has a file that can hold it."""
     if settings.film.overscan is None or not flags.paths:
@@ -161,10 +173,10 @@ def check_writable(output: Output) -> None:
         claim(output.checkpoint)
 
 
-def _groups(names: list[str], *, everything: bool) -> list[str]:
+def _groups(names: list[str]) -> list[str]:
     """Groups of channels by their names in flags, without the groups of every picture."""
     film = names_of(Source.FILM)
-    groups = set(film) if everything else set()
+    groups: set[str] = set()
     for name in (part.strip() for text in names for part in text.split(",")):
         if name == "all":
             groups |= set(film)

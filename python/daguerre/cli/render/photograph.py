@@ -67,12 +67,6 @@ def mode_notes(
         brackets: Whether --bracket is given.
     """
     found = []
-    mode, colon, pattern = camera.exposure.partition(":")
-    if colon:
-        found.append(
-            f"--exposure {mode}:{pattern} is now --exposure {mode} --meter {pattern}; the old form "
-            "ends with 1.2.0"
-        )
     asked = [CAMERA[name].flag for name in _EXPOSED if name in changes]
     asked += ["--look"] * looks + ["--bracket"] * brackets
     if camera.exposure == "light" and asked and changes.get("exposure") is None:

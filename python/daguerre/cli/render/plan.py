@@ -21,7 +21,7 @@ from daguerre.rendering.picture import Picture, in_order, path_of
 from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
 
-from . import checks, crops
+from . import checks
 from .frames import check_names, frame_numbers
 from .photograph import mode_notes, photograph_of
 from .views import CallView, Cameras, check_places
@@ -84,7 +84,7 @@ def plan_of(
     checks.check_overscan(flags, settings[0])
     checks.check_truth(groups, rows, maps)
     if scene is not None or flags.res:  # else its size is not known
-        settings = crops.placed(settings, rows.crop, tell=scene is not None)
+        checks.check_crop(settings)
     numbers = frame_numbers("--frames", flags.frames) if flags.frames is not None else None
     maps.check()
     files = [*flags.paths, *(flags.noisy or ()), *maps.files]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from daguerre.camera.exposure_mode import CHOICES, chosen_by, split_mode
+from daguerre.camera.exposure_mode import CHOICES, chosen_by
 from daguerre.camera.ideal import IDEAL
 from daguerre.camera.parameters import CAMERA
 from daguerre.cli import console
@@ -65,7 +65,7 @@ def over_plate(
 
 
 def _check_mode(exposure: str, kept: dict[str, Any]) -> None:
-    mode, _ = split_mode(exposure)
+    mode = exposure
     if any(name in kept for name in chosen_by(mode)):
         raise UsageError(
             f"--exposure {mode} and --like-plate: wanted one of them, got both; the plate sets "

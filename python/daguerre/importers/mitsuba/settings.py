@@ -129,7 +129,7 @@ def depth_of(scene: Node, notes: Notes) -> int | None:
     while integrator is not None and integrator.plugin in _WRAPPERS:
         if integrator.has("aovs"):
             integrator.skip("aovs")
-            notes.add("the data of an 'aov' integrator are drawn by --aovs")
+            notes.add("the data of an 'aov' integrator are drawn by --aov")
         integrator = integrator.nested_one("integrator")
     if integrator is None:
         return None

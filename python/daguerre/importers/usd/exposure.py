@@ -19,7 +19,7 @@ import numpy as np
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import ideal_h0
-from daguerre.camera.exposure_mode import AUTOMATIC, CHOICES, chosen_by, split_mode
+from daguerre.camera.exposure_mode import AUTOMATIC, CHOICES, chosen_by
 from daguerre.motion.values import Keys, at, keys
 from daguerre.sensors.iso_speed import GREY, GREY_LX_S
 
@@ -56,7 +56,7 @@ def read_exposure(read: Checked, named: str | None) -> dict[str, Any]:
         field = "exposure_compensation"
         found[field] = read.accepted(EV, field, read.moving(EV, float))
     authored = [name for name in SCALE if read.is_authored(name)]
-    mode, _ = split_mode(named or "manual")
+    mode = named or "manual"
     for name in authored:
         field, _ = SCALE[name]
         if field in chosen_by(mode):
