@@ -1,11 +1,11 @@
-"""Set-up of lenses, cold and from an earlier aim, and the data sheet of one lens.
+"""Set-up of lenses, and the data sheet of one lens.
 
     python bench/lens_setup.py --json [--only KIND ...] [--no-sheet]
 
-Cold: from the file's name to a lens that draws rays (parse, zoom, focus, fit), nothing kept from
-before; 3 m away, wide open, for the whole film. Cached: the same lens in C++ from the state that an
-earlier one left. CPU seconds of one thread, the shortest of several, imports not counted. The data
-sheet is launch to file of ``daguerre lens NAME --plot``, wall seconds, imports counted.
+From the file's name to a lens that draws rays (parse, zoom, focus, fit), nothing kept from before;
+3 m away, wide open, for the whole film. CPU seconds of one thread, the shortest of several, imports
+not counted. The data sheet is launch to file of ``daguerre lens NAME --plot``, wall seconds,
+imports counted.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ CASES = {
     "tilted": Case("canon-ts-e-90mm-f2.8-macro", 2.0, tilt_deg=(8.0, 0.0)),
     "anamorphic": Case("schneider-anamorphic-60mm", 2.0),
 }
-CACHED_WANTED_S, SHEET_WANTED_S = 0.005, 5.0
+SHEET_WANTED_S = 5.0
 SHEET = "double-gauss-50mm-f2"
 
 
-def set_up(case: Case) -> tuple[_core.ExactLens, Callable[[], Any]]:
-    """The lens from its name; and what makes it again in C++ from its own state."""
+def set_up(case: Case) -> _core.ExactLens:
+    """The lens from its name."""
     focused = dg.lenses.load(case.lens).focused(3.0, zoom_mm=case.zoom_mm)
     film = [float(s) for s in (focused.lens.data.get("format") or "36x24").split("x")]
 
@@ -58,12 +58,7 @@ def set_up(case: Case) -> tuple[_core.ExactLens, Callable[[], Any]]:
         tilt_deg=case.tilt_deg,
         film_half_mm=(0.51 * film[0], 0.51 * film[1]),
     )
-
-    def make(cache: bytes | None) -> _core.ExactLens:
-        return _core.ExactLens(focused.lens.prescription, settings, cache)
-
-    exact = make(None)
-    return exact, lambda: make(exact.aim_state)
+    return _core.ExactLens(focused.lens.prescription, settings)
 
 
 def shortest(action: Callable[[], Any], times: int) -> float:
@@ -78,13 +73,10 @@ def shortest(action: Callable[[], Any], times: int) -> float:
 
 def measure(case: Case, repeats: int) -> dict[str, Any]:
     """One kind of lens."""
-    _, again = set_up(case)
     return {
         "lens": case.lens,
         "cold_seconds": shortest(lambda: set_up(case), repeats),
         "cold_wanted": case.wanted_s,
-        "cached_seconds": shortest(again, 4 * repeats),
-        "cached_wanted": CACHED_WANTED_S,
     }
 
 
@@ -122,8 +114,8 @@ def main() -> int:
         return 0
     for kind, case in result["lenses"].items():
         print(
-            f"{kind:11} {case['lens']:32} cold {case['cold_seconds'] * 1e3:6.0f} ms "
-            f"({case['cold_wanted'] * 1e3:.0f}), cached {case['cached_seconds'] * 1e3:.1f} ms"
+            f"{kind:11} {case['lens']:32} {case['cold_seconds'] * 1e3:6.0f} ms "
+            f"({case['cold_wanted'] * 1e3:.0f})"
         )
     if "sheet" in result:
         print(f"data sheet  {result['sheet']['seconds']:.1f} s ({result['sheet']['wanted']:g})")

@@ -29,9 +29,9 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre import _core
-from daguerre.setup import aim_cache
 from daguerre.setup import lens as camera_prescription
 
+EXACT = _core.ExactLens  # the class itself, while sessions get lenses of other makers
 LENS = Path(__file__).parent / "lenses" / "us5537259.json"
 DEGREES = (3, 5, 7, 9)
 TAYLOR = 5
@@ -62,7 +62,7 @@ def scene() -> dg.Scene:
 
 def guided(lens: _core.Prescription, settings: _core.ExactLensSettings) -> _core.ExactLens:
     """The exact lens as it is."""
-    return _core.ExactLens(lens, settings)
+    return EXACT(lens, settings)
 
 
 def drawn(draw: _core.PupilDraw) -> Maker:
@@ -70,7 +70,7 @@ def drawn(draw: _core.PupilDraw) -> Maker:
 
     def make(lens: _core.Prescription, settings: _core.ExactLensSettings) -> _core.ExactLens:
         settings.draw = draw
-        return _core.ExactLens(lens, settings)
+        return EXACT(lens, settings)
 
     return make
 
@@ -80,7 +80,7 @@ def fitted(degree: int) -> Maker:
 
     def make(lens: _core.Prescription, settings: _core.ExactLensSettings) -> _core.ExactLens:
         settings.fit_degree = degree
-        return _core.ExactLens(lens, settings)
+        return EXACT(lens, settings)
 
     return make
 
@@ -88,7 +88,7 @@ def fitted(degree: int) -> Maker:
 def taylor(prescription: _core.Prescription, settings: _core.ExactLensSettings) -> _core.ExactLens:
     """By the series about the axis, in the basis of a fit of its degree."""
     settings.fit_degree = TAYLOR
-    lens = _core.ExactLens(prescription, settings)
+    lens = EXACT(prescription, settings)
     fit = dg.polynomial.LensFit(lens.fit)
     u = qmc_points(4000)
     f, q = disc(u[:, :2]) * lens.fit.film_half[0], disc(u[:, 2:4])
@@ -108,7 +108,7 @@ def taylor(prescription: _core.Prescription, settings: _core.ExactLensSettings) 
     across = (out[:, 2:] ** 2).sum(axis=1, keepdims=True)
     directions = np.concatenate([out[:, 2:], -np.sqrt(np.maximum(1e-6, 1 - across))], axis=1)
     other = fit.refitted(f, m, nm, origins, directions)
-    return _core.ExactLens(prescription, settings, lens.state_with_fit(other.core))
+    return lens.with_fit(other.core)
 
 
 def qmc_points(count: int) -> Picture:
@@ -152,10 +152,8 @@ class Drawing:
             self.ray_error = ray_error(lens)
             return lens
 
-        with (
-            mock.patch.object(camera_prescription, "exact_lens", timed),
-            mock.patch.object(aim_cache, "load", return_value=None),
-        ):
+        camera_prescription._glass.cache_clear()  # it would have the lens of another maker
+        with mock.patch.object(camera_prescription._core, "ExactLens", timed):
             self.session = dg.Session(
                 made, camera, resolution=resolution, seed=seed, filter="box", light_paths="off"
             )

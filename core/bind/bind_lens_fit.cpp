@@ -16,7 +16,6 @@
 #include "bind/record.h"
 #include "bind/thread_seconds.h"
 #include "bind/unlocked.h"
-#include "camera/kept/fit_state.h"
 #include "math/error.h"
 #include "optics/first_order/paraxial.h"
 #include "optics/expansion/lens_fit_simd.h"
@@ -292,11 +291,6 @@ Pair seconds_a_ray(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slo
     return {out, in};
 }
 
-nb::bytes bytes(const dg::LensFit& fit) {
-    const std::string b = dg::to_bytes(fit);
-    return nb::bytes(b.data(), b.size());
-}
-
 /// Parts of a fit that files store.
 void def_data(nb::class_<dg::LensFit>& c) {
     using namespace dg;
@@ -355,13 +349,6 @@ void bind_lens_fit(nb::module_& m) {
              "angles"_a, "offsets"_a)
         .def("seconds_a_ray", &seconds_a_ray, "film_mm"_a, "slopes"_a, "wavelength_nm"_a,
              "repeats"_a, "CPU seconds of the kernels: film to scene, scene to film.")
-        .def("to_bytes", &bytes)
-        .def_static(
-            "from_bytes",
-            [](const nb::bytes& b) {
-                return fit_from_bytes(std::string(b.c_str(), b.size()));
-            },
-            "None if they are damaged.")
         .def("check", &check_lens_fit, "Error if its parts do not fit together.")
         .def("evaluate", &evaluate, "film_mm"_a, "slopes"_a, "wavelength_nm"_a)
         .def("to_film", &to_film, "origins"_a, "directions"_a, "wavelength_nm"_a);

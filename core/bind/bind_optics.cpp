@@ -8,9 +8,7 @@
 #include "bind/record.h"
 #include "bind/thread_seconds.h"
 #include "bind/unlocked.h"
-#include "camera/kept/aim_state.h"
 #include "camera/exact.h"
-#include "camera/kept/fit_state.h"
 #include "math/error.h"
 
 namespace nb = nanobind;
@@ -55,16 +53,6 @@ auto generate(const dg::ExactLens& lens, const dg::bind::Rows2f& film_mm,
                           dg::bind::to_numpy(std::move(directions), {n, 3}),
                           dg::bind::to_numpy(std::move(weights), {n}),
                           dg::bind::to_numpy(std::move(aims), {n}));
-}
-
-/// The aim_state of the lens with another fit.
-nb::bytes state_with_fit(const dg::ExactLens& lens, const dg::LensFit& fit) {
-    const std::string bytes = lens.aim_state(), key = bytes.substr(0, 32);
-    auto state = dg::aim_from_bytes(bytes, key);
-    if (!state || state->fit.empty()) throw dg::Error("exact lens: the lens has no fit");
-    state->fit = dg::to_bytes(fit);
-    const std::string other = dg::to_bytes(*state, key);
-    return nb::bytes(other.data(), other.size());
 }
 
 /// Traces the samples `repeats` times in this thread; returns the number of rays that passed, and CPU seconds.
@@ -118,24 +106,11 @@ void def_set_up(nb::class_<dg::ExactLens>& c) {
     using namespace dg;
     c.def(
          "__init__",
-         [](ExactLens* self, const Prescription& lens, ExactLensSettings settings,
-            const std::optional<nb::bytes>& cache) {
-             if (cache) settings.cache.assign(cache->c_str(), cache->size());
+         [](ExactLens* self, const Prescription& lens, const ExactLensSettings& settings) {
              dg::bind::Unlocked release;   // states of a lens are set up in parallel
              new (self) ExactLens(lens, settings);
          },
-         "prescription"_a, "settings"_a, "cache"_a = nb::none(),
-         "cache: aim_state of an earlier one; not used unless it fits.")
-        .def_static("aim_key", &aim_key, "prescription"_a, "settings"_a,
-                    "Name of the aim_state that a lens with these settings has.")
-        .def_prop_ro("aim_state",
-                     [](const ExactLens& lens) {
-                         const std::string state = lens.aim_state();
-                         return nb::bytes(state.data(), state.size());
-                     },
-                     "Results of the set-up, for `cache` of the same lens another time.")
-        .def("state_with_fit", &state_with_fit, "fit"_a,
-             "Its aim_state with another fit in place of its own, for comparisons.");
+         "prescription"_a, "settings"_a);
 }
 
 /// Copies of the lens with a changed option.
@@ -153,6 +128,7 @@ void def_variants(nb::class_<dg::ExactLens>& c) {
              },
              "front"_a.none(), "iris"_a.none(),
              "Dust and scratches: transmittances (H, W) over the clear front and the open iris.")
+        .def("with_fit", &ExactLens::with_fit, "fit"_a, "The same lens, drawn from this fit.")
         .def("without_fit", &ExactLens::without_fit, "The same lens, traced surface by surface.")
         .def_prop_ro("fit", &ExactLens::fit, nb::rv_policy::reference_internal,
                      "Fit that rays are drawn from instead of the surfaces; None: they are traced.");

@@ -4,8 +4,6 @@
 #include <functional>
 #include <memory>
 
-#include "camera/kept/aim_state.h"
-#include "camera/kept/fit_state.h"
 #include "camera/mean_ray.h"
 #include "camera/tilt.h"
 #include "math/thread_scratch.h"
@@ -72,8 +70,8 @@ struct ExactLens::State {
     LensTables tables;
     std::optional<LensFit> fit;
     FitTables fit_tables;
-    std::string key;
-    AimState found;
+    Aim aim;
+    double h0 = 0, transmittance = 0;
 
     State(const Prescription& lens, const ExactLensSettings& s)
         : settings(s), lens(lens), tracer(polished(without_stop_aperture(lens))), order(dg::first_order(lens)) {
@@ -111,18 +109,9 @@ struct ExactLens::State {
         request.film = {-1.0 * s.film_center_mm, kFilmMargin * s.film_half_mm};
         tables = make_lens_tables(Tracer(without_stop_aperture(lens)), film_plane(), true,
                                   &settings.iris, iris_radius);
-        key = aim_key(lens, s);
-        auto known = aim_from_bytes(s.cache, key);
-        if (known && s.fitted) fit = fit_from_bytes(known->fit);
-        if (known && fit.has_value() == s.fitted.has_value()) {
-            found = std::move(*known);
-        } else {
-            found.aim = make_aim(tracer, request);
-            set_exposure();
-            if (s.fitted) fit = fitted(request), found.fit = to_bytes(*fit);
-        }
-        if (fit) fit_tables = make_fit_tables(*fit, tables.iris);
-        settings.cache.clear();
+        aim = make_aim(tracer, request);
+        set_exposure();
+        if (s.fitted) set_fit(fitted(request));
     }
 
     /// Depth of the film along the camera's axis, from the centre of the entrance pupil; the lens's
@@ -136,6 +125,10 @@ struct ExactLens::State {
         const Affine3d back = inverse(turn);
         const Vec3d center = back.vector({ahead.x, ahead.y, film_depth()});
         return {center + Vec3d{0, 0, order.entrance_pupil_z}, back.x, back.y};
+    }
+
+    void set_fit(LensFit made) {
+        fit = std::move(made), fit_tables = make_fit_tables(*fit, tables.iris);
     }
 
     /// Fits the lens at the requested degree; subdivides the film radius while the error is too
@@ -160,7 +153,7 @@ struct ExactLens::State {
         const Vec2d chief =
             symmetric ? Vec2d{} : ChiefMap(tracer, {{0, 0, film_z}}, {{}, {1, 1}}).slope({}, {});
         const LensRay axis{{0, 0, film_z}, normalize(Vec3d{-chief.x, -chief.y, -1})};
-        double weights = 0, &h0 = found.h0, &transmittance = found.transmittance;
+        double weights = 0;
         for (double nm = 390; nm <= 770; nm += symmetric ? 20 : 40) {
             const double w = cie_y(nm) * d65(nm);
             h0 += w * (symmetric ? axial_irradiance(tracer, film_z, opening, iris_radius, nm)
@@ -181,7 +174,15 @@ struct ExactLens::State {
 ExactLens::ExactLens(const Prescription& lens, const ExactLensSettings& settings)
     : state_(std::make_shared<State>(lens, settings)),
       fitted_(state_->fit.has_value()),
-      unit_(state_->found.h0) {}
+      unit_(state_->h0) {}
+
+ExactLens ExactLens::with_fit(LensFit fit) const {
+    auto state = std::make_shared<State>(*state_);
+    state->set_fit(std::move(fit));
+    ExactLens lens = *this;
+    lens.state_ = std::move(state), lens.fitted_ = true, lens.chief_ = {};
+    return lens;
+}
 
 ExactLens ExactLens::without_fit() const {
     if (!fitted_) return *this;
@@ -258,10 +259,10 @@ void ExactLens::generate(std::span<const CameraSample> samples,
             b.samples.x[i] = b.samples.y[i] = b.samples.u[i] = b.samples.v[i] = 0,
             b.samples.nm[i] = 550;
         if (fitted_) {
-            aimed_rays(state_->tables, state_->found.aim.tables, b.samples, b.film, b.weight, padded);
+            aimed_rays(state_->tables, state_->aim.tables, b.samples, b.film, b.weight, padded);
             fit_to_scene(state_->fit_tables, b.film, b.scene, padded);
         } else {
-            guided_rays(state_->tables, state_->found.aim.tables, b.samples, b.scene, b.weight,
+            guided_rays(state_->tables, state_->aim.tables, b.samples, b.scene, b.weight,
                         nullptr, padded);
         }
         for (int i = 0; i < count; ++i) {
@@ -332,7 +333,7 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
             fit_to_film(state_->fit_tables, b.scene, b.film, padded);
         else
             trace_to_film(state_->tables, b.scene, b.film, padded);
-        aim_weights(state_->tables, state_->found.aim.tables, b.film, b.scene, b.weight,
+        aim_weights(state_->tables, state_->aim.tables, b.film, b.scene, b.weight,
                     padded);
         for (int i = 0; i < count; ++i) {
             const float aim = b.weight[i] * inv_h0;
@@ -462,10 +463,10 @@ Vec3d ExactLens::chief_direction(Vec2d film_mm) const {
 }
 
 double ExactLens::h0() const {
-    return state_->found.h0;
+    return state_->h0;
 }
 double ExactLens::transmittance() const {
-    return state_->found.transmittance;
+    return state_->transmittance;
 }
 double ExactLens::f_stop() const {
     return state_->settings.f_stop;
@@ -482,9 +483,6 @@ double ExactLens::film_distance_mm() const {
 double ExactLens::half_diagonal_mm() const {
     return state_->settings.half_diagonal_mm;
 }
-std::string ExactLens::aim_state() const {
-    return to_bytes(state_->found, state_->key);
-}
 FilmPlane ExactLens::film_plane() const {
     return state_->film_plane();
 }
@@ -498,7 +496,7 @@ const FirstOrder& ExactLens::first_order() const {
     return state_->order;
 }
 const Aim& ExactLens::aim() const {
-    return state_->found.aim;
+    return state_->aim;
 }
 const Tracer& ExactLens::tracer() const {
     return state_->tracer;

@@ -42,8 +42,6 @@ struct ExactLensSettings {
     /// Used part of the film, mm, upright; half 0: all within half_diagonal_mm.
     Vec2d film_center_mm{}, film_half_mm{};
     std::optional<FittedGlass> fitted{};
-    /// aim_state() of an earlier lens; ignored unless lens and settings are the same.
-    std::string cache{};
 };
 
 /// A prescription at a focus distance and f-stop, prepared to generate rays. Cheap to copy.
@@ -63,6 +61,8 @@ class ExactLens {
 
     bool is_dirty() const { return dirt_ != nullptr; }
 
+    /// Copy of this lens that draws from this fit.
+    ExactLens with_fit(LensFit fit) const;
     /// Copy of this lens that traces surfaces instead of the fit.
     ExactLens without_fit() const;
     /// Polynomial fit with its errors; null if the lens traces surfaces.
@@ -132,9 +132,6 @@ class ExactLens {
     FilmPlane film_plane() const;     // in the lens frame; image coordinates are inverted
     double film_distance_mm() const;  // from the rear principal point
     double half_diagonal_mm() const;
-    /// Results of the set-up as bytes; with them the same lens is set up immediately and bitwise
-    /// equal.
-    std::string aim_state() const;
     const ExactLensSettings& settings() const;
     /// Whether the lens is rotationally symmetric about the camera's axis.
     bool is_axial() const;

@@ -428,7 +428,6 @@ ARGS: dict[str, Make] = {
     "dg.polynomial.LensFit.evaluate": constant(
         film_points=[(1.0, 1.0)], slopes=[(0.0, 0.0)], wavelength_nm=550.0
     ),
-    "dg.polynomial.LensFit.from_bytes": lambda w: {"data": w.fit.to_bytes()},
     "dg.polynomial.LensFit.refitted": lambda w: refit(w),
     "dg.polynomial.LensFit.save": lambda w: {"path": w.out / "fit.json"},
     "dg.polynomial.LensFit.to_film": lambda w: {

@@ -46,7 +46,7 @@ def test_a_change_replaces_the_motion():
     assert wide.motion.keys() == {"focal_length"}
     assert camera.with_(lens="double-gauss-50mm-f2").motion.keys() == {"f_stop"}
     focused = camera.with_(focus_distance=dg.keys([(0, 1), (1, 2)]))
-    assert focused.at(0.5).focus_distance == 1.5
+    assert focused.frozen_at(0.5).focus_distance == 1.5
     assert focused.with_(focus_on="node").motion.keys() == camera.motion.keys()
 
 

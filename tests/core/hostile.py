@@ -143,14 +143,16 @@ def lens() -> Any:
 
 @cache
 def fitted() -> Any:
-    """A fit; the core reads it in place, so a case gets its own by its bytes."""
+    """A fit; the core reads it in place, so a case gets its own by its data."""
     from daguerre import polynomial
 
-    return polynomial.fit(lens(), 3, segments=2).core.to_bytes()
+    return polynomial.fit(lens(), 3, segments=2).to_dict()
 
 
 def fit() -> Any:
-    return _core.LensFit.from_bytes(fitted())
+    from daguerre.polynomial.fit_data import from_dict
+
+    return from_dict(fitted())
 
 
 def made_with(make: Any, use: Any) -> Callable[..., Any]:
@@ -451,7 +453,7 @@ def _of_fits() -> dict[str, Call]:
     functions = fit().segments[0].direction.x
 
     def unchecked(made: Any) -> Any:
-        return made.evaluate(film, slopes, nm), made.to_film(points, ahead, nm), made.to_bytes()
+        return made.evaluate(film, slopes, nm), made.to_film(points, ahead, nm)
 
     def used(made: Any) -> Any:
         made.check()
@@ -478,10 +480,6 @@ def _of_fits() -> dict[str, Call]:
         "LensFit.describe": (fit().describe, [points, ahead]),
         "LensFit.refitted": (fit().refitted, [*many, many[0].copy(), many[1].copy()]),
         "LensFit.seconds_a_ray": (fit().seconds_a_ray, [film, slopes, nm, Few(1)]),
-        "LensFit.from_bytes": (
-            lambda b: (lambda made: made and unchecked(made))(c.LensFit.from_bytes(b.tobytes())),
-            [np.frombuffer(fitted(), U8)],
-        ),
     }
 
 
@@ -553,14 +551,6 @@ def _of_cameras() -> dict[str, Call]:
                 c.ExactLensSettings, lambda s: seen(c.Camera.exact(still, c.ExactLens(p, s)))
             ),
             [fitted_settings],
-        ),
-        "ExactLens of a cache": (
-            lambda b: c.ExactLens(
-                p,
-                c.ExactLensSettings(f_stop=4.0, focus_distance_m=2.0, half_diagonal_mm=22.0),
-                b.tobytes(),
-            ).generate(film, u, nm),
-            [np.frombuffer(exact.aim_state, U8)],
         ),
         "ExactLens.with_dirt": (
             lambda *a: exact.with_dirt(*a).generate(film, u, nm),

@@ -102,7 +102,6 @@ def traced(folder: Path, seed: int, count: int) -> Run:
         **os.environ,
         "TMPDIR": str(folder / "tmp"),
         "HOME": str(folder / "home"),
-        "DAGUERRE_CACHE": str(folder / "home"),
         "PYTHONDONTWRITEBYTECODE": "1",
         "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
     }

@@ -179,11 +179,8 @@ def test_chief_rays_are_in_the_middle_of_the_rays_of_the_picture(kind: str) -> N
 
 
 @pytest.mark.parametrize("kind", ["tilted", "anamorphic"])
-def test_other_wavelengths_land_where_they_alone_would(
-    kind: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Any
-) -> None:
+def test_other_wavelengths_land_where_they_alone_would(kind: str) -> None:
     """Reprojected ones against the mean over pictures of one wavelength a path."""
-    monkeypatch.setenv("DAGUERRE_CACHE", str(tmp_path))  # one set-up for all
     camera = SKEW[kind].with_(f_stop=2.5, **({} if kind == "anamorphic" else SHIFTED))
     scene = dg.Scene()
     mesh = scene.add_mesh(*scenes.quad(0.05))
@@ -213,11 +210,8 @@ def test_an_anamorphic_picture_says_how_to_view_it() -> None:
     assert lenses.load(LENS).squeeze == 1
 
 
-def test_an_anamorphic_picture_is_as_wide_as_its_metadata_says(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Any
-) -> None:
+def test_an_anamorphic_picture_is_as_wide_as_its_metadata_says() -> None:
     """Far points near the axis, by world-to-NDC and by the lens's own chief rays."""
-    monkeypatch.setenv("DAGUERRE_CACHE", str(tmp_path))  # one set-up for all
     camera = SKEW["anamorphic"].with_(focus_distance=math.inf)
     session = dg.Session(dg.Scene(), camera, resolution=(249, 207))
     chief = set_up(dg.Scene(), camera, (249, 207), None).core.chief_rays()

@@ -35,5 +35,5 @@ def test_lens_rays() -> None:
 def test_lens_setup() -> None:
     found = result("lens_setup.py", "--only", "axial", "--repeats", "1", "--no-sheet")
     axial = found["lenses"]["axial"]
-    assert axial["cold_seconds"] > axial["cached_seconds"] > 0
+    assert 0 < axial["cold_seconds"] < 100 * axial["cold_wanted"]
     assert "sheet" not in found

@@ -15,7 +15,6 @@ OTHERS = {
     "pictures/picture_files.py",  # a pipe of this process
     "pictures/png.py",  # the temporary file that it writes
     "scene/packed/chunk.py",  # the .glb that was written just now
-    "setup/aim_cache.py",  # the cache
     "viewfinder/browser.py",  # the program of the browser
     "viewfinder/lens_list.py",  # drawings of the package
     "viewfinder/server.py",  # the page, and photographs that it has written

@@ -70,7 +70,6 @@ def traced(jobs: list[list[str]], folder: Path, program: str = PROGRAM) -> list[
     environment = {
         **os.environ,
         "TMPDIR": str(folder / "tmp"),
-        "DAGUERRE_CACHE": str(folder / "cache"),
         "HOME": str(folder / "home"),
         "PYTHONDONTWRITEBYTECODE": "1",
     }

@@ -54,8 +54,7 @@ def test_a_render_ends(light_paths: str) -> None:
     assert ended_in(lambda: session.draw(0, 1 << 20), 0.2) < MOST_S
 
 
-def test_the_set_up_of_a_lens_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("DAGUERRE_CACHE", "off")
+def test_the_set_up_of_a_lens_ends() -> None:
     camera = dg.Camera(lens=DOUBLE_GAUSS, lens_model="polynomial", degree=9)
 
     def set_up() -> None:

@@ -22,7 +22,6 @@ from daguerre.errors import InputError, MismatchError, UsageError
 from daguerre.files import value
 from daguerre.post import recipe
 from daguerre.rendering import merging, passes
-from daguerre.setup import aim_cache
 
 NOW = dg.__version__
 OTHER = re.sub(r"\d", "9", NOW)  # as long, so that a file keeps its layout
@@ -214,16 +213,3 @@ def test_a_pickle_without_a_version_is_refused() -> None:
         InputError, match=r"pickle of a Camera: made by daguerre of an older version"
     ):
         dg.Camera.__new__(dg.Camera).__setstate__(state)
-
-
-def test_an_aim_that_another_version_kept_is_not_used(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("DAGUERRE_CACHE", str(tmp_path))
-    aim_cache.store("key", b"state")
-    build = aim_cache.BUILD
-    assert build.startswith(NOW)
-    monkeypatch.setattr(aim_cache, "BUILD", build.replace(NOW, OTHER))
-    assert aim_cache.load("key") is None
-    monkeypatch.setattr(aim_cache, "BUILD", build)
-    assert aim_cache.load("key") == b"state"

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 import daguerre._core as _core
 from daguerre.argument_checks import guarded
 from daguerre.checks import wavelengths
-from daguerre.errors import InputError, UsageError, core_errors
+from daguerre.errors import UsageError, core_errors
 from daguerre.files import formats
 from daguerre.files.value import BriefRecord
 
@@ -211,24 +211,6 @@ class LensFit:
         core = from_dict(data)
         setting = data.get("setting") if isinstance(data, dict) else None
         return cls(core, None if setting is None else FitSetting.from_dict(setting))
-
-    def to_bytes(self) -> bytes:
-        """Returns the fit as bytes for this machine, exact to the last bit."""
-        return bytes(self.core.to_bytes())
-
-    @classmethod
-    def from_bytes(cls, data: bytes) -> LensFit:
-        """Makes a fit from the bytes of ``to_bytes``.
-
-        Raises:
-            InputError: The bytes are damaged, or from another version.
-        """
-        core = _core.LensFit.from_bytes(data)
-        if core is None:
-            raise InputError(
-                "lens fit: the bytes are damaged, or not from to_bytes of this version"
-            )
-        return cls(core)
 
     def __repr__(self) -> str:
         angle, film = self.error.direction_rad[0], self.error.film_um[0]

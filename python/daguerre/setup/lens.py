@@ -27,7 +27,6 @@ from daguerre.lenses.setting import LensSetting
 from daguerre.lenses.stop_size import check_stop_size
 
 from . import tilt
-from .aim_cache import exact_lens
 from .body import parts_of, stack_of
 from .fit import DEFAULT_DEGREE, FitQuality, judged
 from .focus import ideal_direction
@@ -39,7 +38,7 @@ from .near_clip import Directions
 from .resolved import Glass, ResolvedLens
 
 #: Lenses that are kept, and focuses of each.
-_KEPT = 4
+_KEPT = 16
 
 
 @dataclass(frozen=True)
@@ -136,6 +135,7 @@ class _Glass:
         self.notes = lru_cache(_KEPT)(self._notes)
         self.in_focus = lru_cache(_KEPT)(self._focused)
         self.exact = lru_cache(_KEPT)(self._exact)
+        self.far = lru_cache(_KEPT)(self._far)
 
     def _whole(self, distance: float) -> str | None:
         sharp = self.in_focus(distance)
@@ -150,6 +150,9 @@ class _Glass:
 
     def _exact(self, distance: float, film_mm: tuple[float, float], pitch_mm: float) -> _Exact:
         return _exact(self._camera, self._model, self.in_focus(distance), film_mm, pitch_mm)
+
+    def _far(self, film_mm: tuple[float, float]) -> _core.ExactLens:
+        return _exact_lens(self._camera, film_mm, self.in_focus(math.inf))
 
 
 @lru_cache(_KEPT)
@@ -367,7 +370,7 @@ def _directions(framing: Framing, glass: _Glass, distance: float) -> Directions:
     if camera.focus_at is None or not glass.chosen.traced or any(camera.tilt):
         film = framing_distance(glass.in_focus(distance))
         return ideal_direction(film * tilt.cosine(camera.tilt))
-    far = _exact_lens(camera, framing.film_mm, glass.in_focus(math.inf))
+    far = glass.far(framing.film_mm)
 
     def direction(x: float, y: float) -> NDArray[np.float64]:
         return np.array(far.chief_direction(x, y))
@@ -420,4 +423,4 @@ def _exact_lens(
         fit_degree=fit_degree,
     )
     with reported(sharp.lens.source):
-        return exact_lens(sharp.lens.prescription, settings)
+        return _core.ExactLens(sharp.lens.prescription, settings)

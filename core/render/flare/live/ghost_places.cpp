@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "camera/kept/aim_state.h"
-#include "camera/kept/archive.h"
+#include "camera/byte_writer.h"
+#include "camera/lens_key.h"
 #include "math/portable.h"
 #include "render/flare/live/drawn_ghosts.h"
 #include "render/parallel.h"
@@ -54,7 +54,7 @@ bool GhostPlaces::set_lens(const Camera& camera, const Sensor& sensor) {
     ByteWriter w;
     w(sensor.width, sensor.height, sensor.width_mm, sensor.height_mm, sensor.center_mm.x, sensor.center_mm.y, shift.x, shift.y);
     w(stack.cover_thickness, stack.cover_index, stack.cover_gap, stack.cover_coating, stack.reflectance);
-    std::string key = aim_key(lens.tracer().prescription(), lens.settings()) + w.bytes;
+    std::string key = lens_key(lens.tracer().prescription(), lens.settings()) + w.bytes;
     rays_ = 0;
     if (key == lens_) return true;
     lens_ = std::move(key);
