@@ -44,6 +44,7 @@ class FakeSession:
         settings: RenderSettings | None = None,
         built: object = None,
         piloted: object = None,
+        origin: object = None,
         **keywords: Any,
     ) -> None:
         self.built = built or self
