@@ -1,7 +1,7 @@
 """Ends the threads of OpenImageIO before a fork and restarts them after it.
 
 A fork loses them, and the forked process would wait for them at its end.
-``daguerre.pictures.exr.threads`` does the same for OpenEXR, ``core/bind/unlocked.cpp`` for oneTBB.
+``core/bind/unlocked.cpp`` does the same for oneTBB.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ def version(json: Annotated[bool, option("--json", help="Print one JSON object."
     from daguerre import __version__
 
     facts = {"daguerre": __version__, "python": platform.python_version()}
-    for name in ("numpy", "OpenImageIO", "OpenEXR", "tifffile", "rawpy", "pyoidn", "opencolorio"):
+    for name in ("numpy", "OpenImageIO", "deflate", "tifffile", "rawpy", "pyoidn", "opencolorio"):
         try:
             facts[name] = metadata.version(name)
         except metadata.PackageNotFoundError:

@@ -38,8 +38,6 @@ class Checkpoint:
     def load_writer(self) -> None:
         """Imports the writer of the file early, as memory may be short after hours of drawing."""
         if self.path is not None:
-            import OpenEXR  # noqa: F401
-
             from . import passes  # noqa: F401
 
     def save(self, session: Session) -> None:

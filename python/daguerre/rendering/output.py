@@ -129,8 +129,6 @@ class Output:
                 extras.need(package, str(path))
                 import_module(package)
 
-        if any(path.suffix == ".exr" for path in self.files):
-            import OpenEXR  # noqa: F401
         if any(path.suffix != ".exr" for path in self.files):
             import OpenImageIO  # noqa: F401
         if self.is_pass:

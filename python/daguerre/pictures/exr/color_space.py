@@ -20,6 +20,8 @@ from numpy.typing import NDArray
 from daguerre.color.encodings import encoding_of_space, rec709_from, through
 from daguerre.color.spaces import COLOR_SPACES, LINEAR, WORKING
 
+from .layout import NONE
+
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
 
@@ -122,10 +124,8 @@ def container_planes(planes: Mapping[str, Any]) -> dict[str, Any]:
 
 def container_attributes() -> dict[str, Any]:
     """Attributes that ST 2065-4 adds; the neutral of ACES is always the same."""
-    import OpenEXR
-
     return {
         "acesImageContainerFlag": 1,
         "adoptedNeutral": np.array(COLOR_SPACES[ACES].white, np.float32),
-        "compression": OpenEXR.NO_COMPRESSION,
+        "compression": NONE,
     }

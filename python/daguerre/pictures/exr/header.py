@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import struct
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -23,6 +24,8 @@ KNOWN_FLAGS = TILED | LONG_NAMES | DEEP | MULTIPART
 FIRST_READ, MAX_HEADER = 1 << 16, 1 << 26
 #: Limits: attributes of all headers together, and bytes of a name.
 MAX_ATTRIBUTES, MAX_NAME = 1 << 16, 255
+#: Bytes of a name that need no flag.
+SHORT_NAME = 31
 MAX_CHANNELS = 4096
 PIXEL_TYPES = ("uint32", "float16", "float32")
 
@@ -137,12 +140,23 @@ def _headers(data: bytes, path: Path) -> tuple[list[ExrHeader], int]:
     return [ExrHeader(attributes, flags, len(found)) for attributes in found], at
 
 
-def header_bytes(header: ExrHeader) -> bytes:
-    """Encodes magic number, version and attributes of a scanline file of one part."""
-    out = [struct.pack("<ii", MAGIC, 2 | (header.flags & LONG_NAMES))]
-    for name, (kind, data) in header.attributes.items():
-        out += [_text(name), _text(kind), struct.pack("<i", len(data)), data]
-    return b"".join([*out, b"\0"])
+def header_bytes(parts: Sequence[Mapping[str, tuple[str, bytes]]]) -> bytes:
+    """Encodes magic number, version and the attributes of each part of a scanline file."""
+    flags = MULTIPART if len(parts) > 1 else 0
+    if any(_has_long_names(attributes) for attributes in parts):
+        flags |= LONG_NAMES
+    out = [struct.pack("<ii", MAGIC, 2 | flags)]
+    for attributes in parts:
+        for name, (kind, data) in attributes.items():
+            out += [_text(name), _text(kind), struct.pack("<i", len(data)), data]
+        out.append(b"\0")
+    return b"".join([*out, b"\0" if len(parts) > 1 else b""])
+
+
+def _has_long_names(attributes: Mapping[str, tuple[str, bytes]]) -> bool:
+    channels = ExrHeader(dict(attributes), 0, 1).channels
+    names = [*attributes, *(channel.name for channel in channels)]
+    return any(len(_text(name)) > SHORT_NAME + 1 for name in names)
 
 
 def new_header(

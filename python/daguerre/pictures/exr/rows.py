@@ -1,26 +1,24 @@
 """Writes OpenEXR in bands of rows, so that a picture need not fit into memory.
 
-OpenEXR's Python module writes whole pictures only, and drops attributes that it does not know. So
-this module writes scanline blocks itself, plain or deflated
-(https://openexr.com/en/latest/OpenEXRFileLayout.html; predictor and interleaving: OpenEXR Technical
-Introduction).
+Scanline blocks are plain or deflated (https://openexr.com/en/latest/OpenEXRFileLayout.html;
+predictor and interleaving: OpenEXR Technical Introduction).
 """
 
 from __future__ import annotations
 
 import os
 import struct
-import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Self
 
+import deflate
 import numpy as np
 
 from daguerre.errors import OutputError
 
-from .header import ExrHeader, header_bytes
+from .header import ExrChannel, ExrHeader, header_bytes
 from .layout import COMPRESSIONS, NONE, ZIP
 from .parts import Planes
 
@@ -55,7 +53,7 @@ class ExrWriter:
         self._pool = ThreadPoolExecutor(min(os.cpu_count() or 1, 8))
         self._path = path
         self._stream = path.open("wb")
-        self._stream.write(header_bytes(ExrHeader(kept, source.flags, 1)))
+        self._stream.write(header_bytes([kept]))
         self._table = self._stream.tell()
         self._stream.write(bytes(8 * self._blocks(self._height)))
 
@@ -78,7 +76,8 @@ class ExrWriter:
         starts = range(0, complete, self._block)
         cut = [{n: joined[n][a : min(a + self._block, complete)] for n in names} for a in starts]
         try:
-            for start, data in zip(starts, self._pool.map(self._packed, cut), strict=True):
+            packed = self._pool.map(self._packed, cut)
+            for start, data in zip(starts, packed, strict=True):
                 self._offsets.append(self._stream.tell())
                 y = self._top + self._next + start
                 self._stream.write(struct.pack("<ii", y, len(data)) + data)
@@ -101,18 +100,22 @@ class ExrWriter:
         return -(-rows // self._block)
 
     def _packed(self, planes: Planes) -> bytes:
-        """Packs a block of rows; each row stores channel after channel."""
-        count = len(next(iter(planes.values())))
-        lines = [
-            np.ascontiguousarray(planes[c.name], np.dtype(c.dtype).newbyteorder("<"))
-            .reshape(count, -1)
-            .view(np.uint8)
-            for c in self._channels
-        ]
-        plain = np.concatenate(lines, axis=1).reshape(-1)
-        if self._compression == NONE:
-            return plain.tobytes()
-        halves = np.concatenate([plain[0::2], plain[1::2]])
-        halves[1:] = halves[1:] - halves[:-1] + np.uint8(128)
-        deflated = zlib.compress(halves.tobytes(), DEFLATE_LEVEL)
-        return deflated if len(deflated) < plain.nbytes else plain.tobytes()
+        return packed(planes, self._channels, self._compression)
+
+
+def packed(planes: Planes, channels: Sequence[ExrChannel], compression: int) -> bytes:
+    """Packs a block of rows; each row stores channel after channel."""
+    count = len(next(iter(planes.values())))
+    lines = [
+        np.ascontiguousarray(planes[c.name], np.dtype(c.dtype).newbyteorder("<"))
+        .reshape(count, -1)
+        .view(np.uint8)
+        for c in channels
+    ]
+    plain = np.concatenate(lines, axis=1).reshape(-1)
+    if compression == NONE:
+        return plain.tobytes()
+    halves = np.concatenate([plain[0::2], plain[1::2]])
+    halves[1:] = halves[1:] - halves[:-1] + np.uint8(128)
+    deflated = bytes(deflate.zlib_compress(halves.tobytes(), DEFLATE_LEVEL))
+    return deflated if len(deflated) < plain.nbytes else plain.tobytes()

@@ -23,7 +23,7 @@ from daguerre.frame import cryptomatte
 from daguerre.frame.world import relative
 
 from . import color_space
-from .threads import threads
+from .whole import WholePart, planes_of, write_whole
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -102,7 +102,7 @@ def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]
     These are R G B A, AOVs, flare.R/G/B, catcher.R/G/B and catcher_ratio.R/G/B, variance.R/G/B,
     samples.Y, mattes (CryptoObject00.R), sensor channels (sensor.R; catcher_sensor.R,
     catcher_ratio_sensor.R) and wavelength bands (bands.0380-0405, nm). An array of three planes is
-    three channels, as in the package OpenEXR, which saves copies. Light is in the space that the
+    three channels, which saves copies. Light is in the space that the
     metadata name (:mod:`.color_space`).
     """
     planes: dict[str, NDArray[np.float32] | NDArray[np.uint32]] = {"RGB": frame.rgb}
@@ -189,20 +189,14 @@ def write_planes(
 
 
 def _write(path: str | os.PathLike[str], parts: list[ExrPart], windows: dict[str, Any]) -> None:
-    import OpenEXR
-
-    storage = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    whole = [
+        WholePart(part.name, windows | part.attributes, planes_of(part.channels)) for part in parts
+    ]
     with atomic_path(path) as temp:
-        exr_parts = [
-            OpenEXR.Part(storage | windows | part.attributes, dict(part.channels), part.name)
-            for part in parts
-        ]
         try:
-            with threads(path), OpenEXR.File(exr_parts) as file:
-                file.write(str(temp))
-        except (RuntimeError, OSError) as error:
-            reason = str(error).replace(str(temp), str(path))
-            raise OutputError(f"{path}: cannot write: {reason}") from error
+            write_whole(temp, whole)
+        except OSError as error:
+            raise OutputError(f"{path}: cannot write: {error.strerror or error}") from error
 
 
 def without_infinity(value: object) -> Any:
