@@ -16,8 +16,8 @@ relMSE / 0.01, as the error falls with 1 / samples.
 --plain: scenes without such lamps, light_paths auto against off.
 --check: instead, camera rays alone, with --spp samples of each pixel in batches of different seeds,
 over crops that hold what is in focus, lamps out of focus, and cat's eyes in a corner; against both
-strategies by Welch's test (tests/support/statistical.py). A whole frame of so many samples would
-take days.
+strategies by Welch's test (tests/support/pictures/statistical.py). A whole frame of so many samples
+would take days.
 """
 
 from __future__ import annotations
@@ -204,7 +204,7 @@ def batches(
 
 def check(options: argparse.Namespace) -> dict[str, Any]:
     """Camera rays alone against both strategies, crop by crop."""
-    from tests.support.statistical import differences, seldom_met
+    from tests.support.pictures.statistical import differences, seldom_met
 
     scene, camera = night_table(options.radius[0] / 1e3)
     # Take as many light paths as the frame gets: a crop's own plan is its small share of them.

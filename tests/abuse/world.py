@@ -14,8 +14,9 @@ from daguerre import analysis, polynomial
 from daguerre.analysis.iris import Iris
 from daguerre.rendering.passes import pass_of, write_pass
 from tests.cluster.fake import Fake
-from tests.support import light_probes, mesh_files, tracked
-from tests.support.plate_frames import of_light, ramp
+from tests.support.formats import mesh_files, tracked
+from tests.support.pictures import light_probes
+from tests.support.pictures.plate_frames import of_light, ramp
 
 SIZE = (8, 6)
 LENS = "canon-serenar-50mm-f1.8"

@@ -15,7 +15,7 @@ from daguerre.analysis.light_search import light_at
 from daguerre.color.spaces import LUMINANCE_709
 from daguerre.color.spectra import rgb_mixes
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
-from tests.support.light_of_renderer import light_of_renderer
+from tests.support.pictures.light_of_renderer import light_of_renderer
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from typing import Any
 
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 from .bases import full
 from .case import Case, Change, both, put, scenes

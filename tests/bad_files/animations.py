@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 from .bases import full
 from .case import Case, Change, drawn, floats, put, scenes

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.support.make_gltf import Builder, png, triangle
+from tests.support.formats.make_gltf import Builder, png, triangle
 
 PIXELS = np.full((8, 8, 3), 128, np.uint8)
 

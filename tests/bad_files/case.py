@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 #: 1 sample of 16 x 9 pixels, under a sky, so that whatever is seen has light to show.
 DRAW = ("-o", "{out}.exr", "--spp", "1", "--res", "16x9", "--threads", "1")

@@ -7,7 +7,7 @@ import os
 import struct
 from pathlib import Path
 
-from tests.support.make_gltf import glb_bytes, triangle
+from tests.support.formats.make_gltf import glb_bytes, triangle
 
 from .bases import full
 from .case import Case, files

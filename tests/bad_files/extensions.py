@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 from .bases import full, moving
 from .case import Case, Change, both, primitive, put, scenes

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.support.make_gltf import Builder, chunk, jpeg, png
+from tests.support.formats.make_gltf import Builder, chunk, jpeg, png
 
 from .bases import PIXELS, full, seen
 from .case import Case

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from tests.support import lens_writers as write
-from tests.support.triplet import CROWN, TRIPLET, Data, row
+from tests.support.lenses import lens_writers as write
+from tests.support.lenses.triplet import CROWN, TRIPLET, Data, row
 
 from .bases import beside_scene
 from .case import DRAW, Case

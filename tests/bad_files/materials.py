@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 from .bases import full, seen
 from .case import Case, Change, both, drawn, put, scenes

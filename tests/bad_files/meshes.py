@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 from .bases import full, seen
 from .case import Case, Change, both, drawn, floats, primitive, put, scenes

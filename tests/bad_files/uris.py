@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-from tests.support.make_gltf import png
+from tests.support.formats.make_gltf import png
 
 from .bases import PIXELS, full
 from .case import Case

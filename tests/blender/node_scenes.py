@@ -13,7 +13,7 @@ import daguerre as dg
 from daguerre.blender.materials import Materials
 from daguerre.files.notes import Notes
 from daguerre.scene.materials import Gltf
-from tests.support import blender_pictures
+from tests.support.blender import blender_pictures
 
 SIZE = 8
 CD_PER_W = 683.0

@@ -13,7 +13,7 @@ import pytest
 import daguerre as dg
 from daguerre.blender import settings
 from daguerre.blender.translate import scene_of
-from tests.support import blender_pictures as blender
+from tests.support.blender import blender_pictures as blender
 
 from . import building, triangles, twelve_scenes
 

@@ -13,7 +13,7 @@ from daguerre.blender.film import resolution_of
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.scene.scene import Scene
-from tests.support import blender_pictures as blender
+from tests.support.blender import blender_pictures as blender
 
 bpy = blender.bpy
 

@@ -8,8 +8,8 @@ import pytest
 import daguerre as dg
 from daguerre.rendering import denoise
 from daguerre.rendering.denoiser import of_library
-from tests.support import blender_extension
-from tests.support.blender_layout import drawn
+from tests.support.blender import blender_extension
+from tests.support.blender.blender_layout import drawn
 
 bpy = pytest.importorskip("bpy", reason="no bpy in this Python")
 

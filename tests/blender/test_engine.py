@@ -13,8 +13,8 @@ import pytest
 import daguerre as dg
 from daguerre import memory
 from daguerre.rendering import Cancelled
-from tests.support import blender_extension
-from tests.support.blender_extension import FACTOR, camera, scene
+from tests.support.blender import blender_extension
+from tests.support.blender.blender_extension import FACTOR, camera, scene
 
 bpy = pytest.importorskip("bpy", reason="no bpy in this Python")
 

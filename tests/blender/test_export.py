@@ -13,7 +13,7 @@ import pytest
 import daguerre as dg
 from daguerre.blender.settings import factor_of, settings_of
 from daguerre.importers.gltf.reader import read
-from tests.support import blender_extension
+from tests.support.blender import blender_extension
 
 bpy = pytest.importorskip("bpy", reason="needs bpy, the wheel of Blender")
 

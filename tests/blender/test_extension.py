@@ -9,7 +9,7 @@ import daguerre as dg
 from daguerre.camera.parameters import CAMERA_FLAGS, SHUTTER
 from daguerre.rendering.parameters import TABLE
 from daguerre.viewfinder.dials import Dials
-from tests.support import blender_extension
+from tests.support.blender import blender_extension
 
 bpy = pytest.importorskip("bpy", reason="no bpy in this Python")
 

@@ -5,7 +5,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.blender.eyes import eye_of
-from tests.support import blender_extension
+from tests.support.blender import blender_extension
 
 bpy = pytest.importorskip("bpy", reason="no bpy in this Python")
 

@@ -11,8 +11,8 @@ import daguerre as dg
 from daguerre.lenses.image_circle import stated_half_image
 from daguerre.plots.lens_section import section
 from daguerre.plots.raster import painted
-from tests.support import blender_extension
-from tests.support.blender_layout import drawn
+from tests.support.blender import blender_extension
+from tests.support.blender.blender_layout import drawn
 
 bpy = pytest.importorskip("bpy", reason="no bpy in this Python")
 

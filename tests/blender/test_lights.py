@@ -10,7 +10,7 @@ from daguerre.blender import lights
 from daguerre.blender.settings import LUMENS_PER_WATT
 from daguerre.files.notes import Notes
 from daguerre.scene.scene import Scene
-from tests.support import blender_pictures as blender
+from tests.support.blender import blender_pictures as blender
 
 bpy = blender.bpy
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import daguerre as dg
-from tests.support.blender_extension import FOLDER, ROOT, wheel_of_this
+from tests.support.blender.blender_extension import FOLDER, ROOT, wheel_of_this
 
 sys.path.insert(0, str(ROOT / "packaging"))
 import blender_manifest
@@ -230,7 +230,7 @@ def installed(folder, path, is_kept, *picture):
         "BLENDER_USER_RESOURCES": str(home),
         "PYTHONPATH": os.pathsep.join(map(str, paths)),
     }
-    script = ROOT / "tests" / "support" / "blender_install.py"
+    script = ROOT / "tests" / "support" / "blender" / "blender_install.py"
     found = subprocess.run(
         [sys.executable, "-S", script, path, *picture],
         capture_output=True, text=True, check=False, timeout=300, cwd=folder,

@@ -7,7 +7,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.blender.motion import exposure_of
-from tests.support import blur
+from tests.support.pictures import blur
 
 from .building import (
     bpy,

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from tests.support import blender_extension
-from tests.support.blender_layout import drawn
+from tests.support.blender import blender_extension
+from tests.support.blender.blender_layout import drawn
 
 bpy = pytest.importorskip("bpy", reason="no bpy in this Python")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from daguerre.blender.settings import LUMENS_PER_WATT, factor_of, settings_of
-from tests.support import blender_pictures as blender
+from tests.support.blender import blender_pictures as blender
 
 bpy = blender.bpy
 

@@ -10,7 +10,7 @@ pytest.importorskip("bpy")
 import bpy
 
 import daguerre as dg
-from tests.support.blender_pictures import camera, card, empty, picture
+from tests.support.blender.blender_pictures import camera, card, empty, picture
 
 from .node_scenes import CD_PER_W, Read
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from tests.support import blender_extension
-from tests.support.blender_extension import FACTOR, camera, scene
+from tests.support.blender import blender_extension
+from tests.support.blender.blender_extension import FACTOR, camera, scene
 
 bpy = pytest.importorskip("bpy", reason="no bpy in this Python")
 

@@ -12,7 +12,7 @@ from daguerre.blender.settings import LUMENS_PER_WATT, factor_of
 from daguerre.blender.world import set_world
 from daguerre.files.notes import Notes
 from daguerre.scene.scene import Scene
-from tests.support import blender_pictures as blender
+from tests.support.blender import blender_pictures as blender
 
 bpy = blender.bpy
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.support import blender_pictures as blender
+from tests.support.blender import blender_pictures as blender
 
 from .building import key, straighten
 from .node_scenes import Tree, picture

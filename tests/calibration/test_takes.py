@@ -19,7 +19,7 @@ from daguerre.calibration.take import label
 from daguerre.cli import main
 from daguerre.files.numbered import numbers_in
 from tests.plates.test_catchers import ground_and_ball
-from tests.support import tracked
+from tests.support.formats import tracked
 
 MOMENTS = tracked.path(4)
 

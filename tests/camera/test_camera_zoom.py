@@ -17,7 +17,7 @@ from daguerre.setup.camera import set_up
 from daguerre.setup.camera_facts import camera_facts
 from daguerre.setup.metadata import facts_of
 from tests.camera.test_lens_models import LENS
-from tests.support import scenes
+from tests.support.scene import scenes
 
 ZOOM = "nikon-ai-25-50mm-f4"
 GROUPS = "telephoto-200mm-f1.8"

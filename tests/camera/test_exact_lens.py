@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre import lenses
-from tests.support import lens_by_hand as by_hand
-from tests.support import scenes
-from tests.support.lens_names import CLASSICS
+from tests.support.lenses import lens_by_hand as by_hand
+from tests.support.lenses.lens_names import CLASSICS
+from tests.support.scene import scenes
 
 Array = NDArray[np.float64]
 SIZE = (60, 40)

@@ -13,7 +13,7 @@ from daguerre import lenses
 from daguerre.setup.camera import set_up
 from daguerre.setup.metadata import facts_of
 from tests.camera.test_lens_models import LENS, rays
-from tests.support import scenes
+from tests.support.scene import scenes
 
 ASPHERIC = "canon-rf-50mm-f1.2"
 

@@ -11,7 +11,7 @@ import pytest
 import daguerre as dg
 from daguerre import polynomial
 from daguerre.errors import InputError, UsageError
-from tests.support.line_glass import on_the_line
+from tests.support.lenses.line_glass import on_the_line
 
 NAME = "double-gauss-50mm-f2"
 

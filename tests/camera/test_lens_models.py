@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import daguerre as dg
 from daguerre import lenses
 from daguerre.setup.camera import set_up
-from tests.support import scenes
+from tests.support.scene import scenes
 
 Array = NDArray[np.float64]
 LENS = "double-gauss-50mm-f2"

@@ -14,8 +14,8 @@ from daguerre.errors import UsageError
 from daguerre.rendering.session import Session
 from daguerre.setup.camera import set_up
 from daguerre.setup.near_clip import directions_of, is_round
-from tests.support import scenes
-from tests.support.statistical import batch_means, differences
+from tests.support.pictures.statistical import batch_means, differences
+from tests.support.scene import scenes
 
 LENS = "double-gauss-50mm-f2"
 FISHEYE = "olympus-zuiko-fisheye-8mm-f2.8"

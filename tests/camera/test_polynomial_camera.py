@@ -16,8 +16,8 @@ from daguerre.errors import UsageError
 from daguerre.setup.camera import set_up
 from daguerre.setup.fit import FitQuality
 from daguerre.setup.resolved import ResolvedCamera
-from tests.support import scenes
-from tests.support.line_glass import on_the_line
+from tests.support.lenses.line_glass import on_the_line
+from tests.support.scene import scenes
 
 Array = NDArray[np.float64]
 GAUSS = "double-gauss-50mm-f2"

@@ -12,7 +12,7 @@ import daguerre as dg
 from daguerre.camera import shutter
 from daguerre.camera.shutter_curve import read_curve
 from daguerre.cli.flags.shutter import ShutterFlags
-from tests.support import scenes
+from tests.support.scene import scenes
 
 SIZE = (30, 20)
 

@@ -9,7 +9,7 @@ import daguerre as dg
 from daguerre.setup import tilt
 from daguerre.setup.camera import set_up
 from tests.camera.test_lens_models import LENS, Array, meeting, rays
-from tests.support import scenes
+from tests.support.scene import scenes
 
 ALL = [(0.0, 0.0), (9.0, 6.0), (-12.0, 4.0), (3.0, -10.0), (0.0, 8.0)]
 KINDS = {

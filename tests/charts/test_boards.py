@@ -14,7 +14,7 @@ from daguerre import charts
 from daguerre.charts import markers
 from daguerre.cli import main
 from daguerre.errors import UsageError
-from tests.support.board_pictures import picture, seen
+from tests.support.pictures.board_pictures import picture, seen
 
 cv2 = pytest.importorskip("cv2")
 

@@ -23,8 +23,8 @@ from daguerre.cli import console, main
 from daguerre.cli.help import EXAMPLES
 from daguerre.files import extras
 from daguerre.rendering.schedule import pass_size
-from tests.support import fake_denoiser, fake_session
-from tests.support.pseudo_terminal import open_terminal
+from tests.support.program import fake_denoiser, fake_session
+from tests.support.program.pseudo_terminal import open_terminal
 
 SMALL = ["--res", "8x6"]
 
@@ -47,7 +47,7 @@ def spawn(*arguments: str, seconds: float = 0.0, **env: str) -> subprocess.Popen
     root = Path(__file__).parents[2]
     paths = [str(root), os.environ.get("PYTHONPATH", "")]
     return subprocess.Popen(
-        [sys.executable, "-m", "tests.support.fake_session", *arguments],
+        [sys.executable, "-m", "tests.support.program.fake_session", *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -493,7 +493,7 @@ def test_a_terminal_gets_a_bar() -> None:
         [
             sys.executable,
             "-m",
-            "tests.support.fake_session",
+            "tests.support.program.fake_session",
             "render",
             "s.glb",
             "-o",

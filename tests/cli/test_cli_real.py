@@ -11,7 +11,7 @@ import OpenEXR
 import pytest
 
 from daguerre.cli import main
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 CHANNELS = {
     *"RGBA", "depth.Z", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "albedo.R", "albedo.G",

@@ -14,7 +14,7 @@ from daguerre.cli import main
 from daguerre.color.spaces import LINEAR
 from daguerre.rendering.passes import read_pass
 from tests.importers.mitsuba.scene_files import camera, written
-from tests.support.stated_light import AP0, AP1, TO_REC709, exr
+from tests.support.pictures.stated_light import AP0, AP1, TO_REC709, exr
 
 SMALL = ("--res", "8x6", "--seed", "3")
 BALL = (

@@ -8,9 +8,9 @@ from PIL import Image
 
 import daguerre as dg
 from daguerre.cli import main
-from tests.support.make_gltf import triangle
-from tests.support.plate_frames import of_light
-from tests.support.plate_textures import TEXTURES
+from tests.support.formats.make_gltf import triangle
+from tests.support.pictures.plate_frames import of_light
+from tests.support.pictures.plate_textures import TEXTURES
 
 SHAPE = (160, 240)
 FACTS = {"nominalFocalLength": 35.0, "isoSpeed": 400, "focus": 3.0}

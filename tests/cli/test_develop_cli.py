@@ -8,7 +8,7 @@ from daguerre.cli import main
 from daguerre.development.camera_raw import read_shot
 from daguerre.development.dng import size_note
 from daguerre.sensors import load
-from tests.support.colour_chart import (
+from tests.support.pictures.colour_chart import (
     delta_e,
     greys,
     lab,

@@ -11,7 +11,7 @@ import daguerre as dg
 from daguerre.cli import main
 from daguerre.cli.render.frames import frame_numbers
 from daguerre.rendering.names import numbered
-from tests.support import fake_session
+from tests.support.program import fake_session
 
 SMALL = ["--res", "8x6", "--spp", "1"]
 

@@ -16,7 +16,7 @@ from daguerre.cli import main
 from daguerre.setup.contents import contents
 from tests.importers.mitsuba import scene_files
 from tests.importers.pbrt import text as pbrt
-from tests.support import scenes
+from tests.support.scene import scenes
 
 
 def gltf(folder: Path) -> Path:

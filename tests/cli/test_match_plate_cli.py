@@ -9,9 +9,9 @@ from scipy import ndimage
 import daguerre as dg
 from daguerre.cli import main
 from daguerre.plates.files import read
-from tests.support.make_gltf import triangle
-from tests.support.plate_edges import squares
-from tests.support.plate_frames import of_light, wedge
+from tests.support.formats.make_gltf import triangle
+from tests.support.pictures.plate_edges import squares
+from tests.support.pictures.plate_frames import of_light, wedge
 
 LENS = {"lensMake": "Canon", "lensModel": "EF85mm f/1.8 USM", "nominalFocalLength": 85.0}
 SHAPE = (400, 600)

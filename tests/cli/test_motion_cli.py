@@ -10,7 +10,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.cli import main
-from tests.support.motion_files import SPAN, YFOV, animate, glowing_card
+from tests.support.formats.motion_files import SPAN, YFOV, animate, glowing_card
 
 SMALL = ["--res", "24x16", "--lens", "pinhole", "--quiet"]
 BLURRED = ["--time", "1", "--shutter", "0.4"]

@@ -18,8 +18,8 @@ from daguerre.rendering.job import Job
 from daguerre.rendering.output import Output
 from daguerre.rendering.picture import Picture, View
 from daguerre.rendering.reporter import PreviewPicture, Reporter
-from tests.support import scenes
-from tests.support.terminal import ROOT, Terminal
+from tests.support.program.terminal import ROOT, Terminal
+from tests.support.scene import scenes
 
 RUN = ("render", "s.glb", "--res", "48x32", "--preview")
 
@@ -47,7 +47,7 @@ def test_interrupted_it_leaves_a_whole_picture(tmp_path: Path) -> None:
 
 def piped(*flags: str) -> subprocess.CompletedProcess[bytes]:
     return subprocess.run(
-        [sys.executable, "-m", "tests.support.fake_session", *RUN, *flags],
+        [sys.executable, "-m", "tests.support.program.fake_session", *RUN, *flags],
         capture_output=True,
         check=False,
         env={"PATH": "", "PYTHONPATH": str(ROOT)},

@@ -18,7 +18,7 @@ import daguerre as dg
 from daguerre.cli import main
 from daguerre.errors import InputError
 from daguerre.setup import built_scene
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 CHAIN = """
 cam0:
@@ -186,7 +186,7 @@ def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: P
         command = [
             sys.executable,
             "-m",
-            "tests.support.fake_session",
+            "tests.support.program.fake_session",
             "render",
             "s.glb",
             *flags,

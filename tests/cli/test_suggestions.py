@@ -11,7 +11,7 @@ from daguerre.cli import main
 from daguerre.errors import did_you_mean, suggest
 from daguerre.scene.node_names import no_node
 from daguerre.scene.packed.values import _camera
-from tests.support import scenes
+from tests.support.scene import scenes
 
 NODES = ["World/Table/Top", "World/Lamp/Top", "World/Lamp/Shade", "ground"]
 

@@ -11,7 +11,7 @@ import pytest
 
 import daguerre.cli
 from daguerre.cli import console, main
-from tests.support.make_gltf import triangle
+from tests.support.formats.make_gltf import triangle
 
 #: Clears the screen, sets the title, rings, turns the line round; one byte that is not UTF-8.
 HOSTILE = "a\x1b[2J\x1b]0;owned\x07b\x9bc\u202ed" + os.fsdecode(b"\xff")

@@ -7,7 +7,7 @@ import daguerre as dg
 from daguerre.color import illuminants, spaces
 from daguerre.development import LOOKS, develop
 from daguerre.sensors import load, names
-from tests.support.colour_chart import (
+from tests.support.pictures.colour_chart import (
     PATCH,
     delta_e,
     greys,

@@ -12,7 +12,7 @@ from daguerre.development import bayer_of
 from daguerre.development.dng import baseline_exposure, noise_profile
 from daguerre.development.raw_files import write_dng
 from daguerre.sensors import load, names
-from tests.support.colour_chart import (
+from tests.support.pictures.colour_chart import (
     PATCH,
     delta_e,
     greys,

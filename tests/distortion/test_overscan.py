@@ -18,8 +18,8 @@ from daguerre.rendering.merging import merge
 from daguerre.rendering.passes import pass_of
 from daguerre.rendering.session import Session
 from tests.post.test_post import post
-from tests.support import scenes
-from tests.support.make_gltf import triangle
+from tests.support.formats.make_gltf import triangle
+from tests.support.scene import scenes
 
 SIZE = (24, 16)
 OVER = (5, 3, 7, 4)  # left, top, right, bottom

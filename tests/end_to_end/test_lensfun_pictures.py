@@ -13,7 +13,7 @@ from daguerre import charts, export
 from daguerre.export.lensfun.frame import PIXELS
 from daguerre.export.lensfun.traced import SENSOR, STOP
 from daguerre.lenses import load
-from tests.support import lensfun
+from tests.support.lenses import lensfun
 
 cv2 = pytest.importorskip("cv2", reason="opencv-python-headless is not installed")
 

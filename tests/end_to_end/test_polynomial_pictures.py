@@ -14,8 +14,8 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from tests.support import scenes
-from tests.support.statistical import welch_p
+from tests.support.pictures.statistical import welch_p
+from tests.support.scene import scenes
 
 Array = NDArray[np.float64]
 GAUSS = {"lens": "double-gauss-50mm-f2"}

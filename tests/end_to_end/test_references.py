@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from tests.references import in_daguerre, scenes
-from tests.support.statistical import Reference, batch_means, differences
+from tests.support.pictures.statistical import Reference, batch_means, differences
 
 FOLDER = Path(__file__).parents[1] / "references"
 FAILURES = Path(__file__).parents[2] / "out" / "test-failures"

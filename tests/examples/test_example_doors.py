@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"

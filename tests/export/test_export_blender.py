@@ -51,7 +51,7 @@ def blender(path, tmp_path, **job):
     }
     file = tmp_path / "job.json"
     file.write_text(json.dumps(job))
-    script = Path(__file__).parents[1] / "support" / "blender_job.py"
+    script = Path(__file__).parents[1] / "support" / "blender" / "blender_job.py"
     subprocess.run([PYTHON, str(script), str(file)], check=True, capture_output=True, timeout=300)
     return oiio.ImageBuf(str(output)).get_pixels()[..., :3].astype(float)
 

@@ -15,7 +15,7 @@ from daguerre.export import aim, languages, lens_code, osl
 from daguerre.export.expression import Function, Name
 from daguerre.export.facts import facts
 from daguerre.export.horner import derivative, horner
-from tests.support.lens_plans import evaluated, made_up
+from tests.support.lenses.lens_plans import evaluated, made_up
 
 PLANS = {
     "symmetric": made_up(),

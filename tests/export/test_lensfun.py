@@ -25,7 +25,7 @@ from daguerre.export.lensfun.xml import as_xml
 from daguerre.lenses import library
 from daguerre.lenses.json_lens import lens_of
 from daguerre.lenses.lens import Lens
-from tests.support import lensfun
+from tests.support.lenses import lensfun
 
 FULL = Frame(36.0, 24.0)
 

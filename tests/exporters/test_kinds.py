@@ -16,7 +16,8 @@ from daguerre.exporters.mitsuba.rough_plastic import Loss
 from daguerre.exporters.record import ExportedView, Outgoing
 from daguerre.scene.media import DensityGrid, Medium
 from daguerre.scene.spectrum import Spectrum
-from tests.support import mitsuba_pictures, outgoing_scenes, pbrt_syntax
+from tests.support.formats import mitsuba_pictures, pbrt_syntax
+from tests.support.scene import outgoing_scenes
 
 GOLD = Spectrum((450.0, 550.0, 650.0), (1.5, 0.4, 0.15))
 GOLD_K = Spectrum((450.0, 550.0, 650.0), (1.9, 2.5, 3.6))

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from tests.support import mitsuba_pictures, outgoing_scenes
+from tests.support.formats import mitsuba_pictures
+from tests.support.scene import outgoing_scenes
 
 pytestmark = [
     pytest.mark.slow,

@@ -13,8 +13,9 @@ import daguerre as dg
 from daguerre.exporters.pbrt.octahedral import directions, resampled
 from daguerre.importers.pbrt.octahedral import directions_of
 from daguerre.pictures.panorama import looked_up
-from tests.support import outgoing_scenes, pbrt_syntax, ply_file
-from tests.support.pbrt_syntax import Directive
+from tests.support.formats import pbrt_syntax, ply_file
+from tests.support.formats.pbrt_syntax import Directive
+from tests.support.scene import outgoing_scenes
 
 SCENES = [
     outgoing_scenes.box, outgoing_scenes.textures, outgoing_scenes.glass, outgoing_scenes.metals,

@@ -12,7 +12,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.files import formats
-from tests.support import outgoing_scenes
+from tests.support.scene import outgoing_scenes
 
 SIZE = (48, 32)
 

@@ -12,7 +12,7 @@ import daguerre as dg
 from daguerre.color import illuminants
 from daguerre.frame.frame import Frame
 from daguerre.sensors import DarkCurrent, HotPixels, load
-from tests.support.flats import flat, lux_s_for, mono
+from tests.support.pictures.flats import flat, lux_s_for, mono
 
 
 def one_to_one(**values):

@@ -14,7 +14,7 @@ from daguerre import lenses
 from daguerre.camera.exposure import ideal_h0
 from daguerre.exposure.lux_seconds import luminance_exposure, pinhole_note, with_exposure
 from daguerre.frame.frame import Frame
-from tests.support import scenes
+from tests.support.scene import scenes
 
 SIZE = (12, 8)
 LENS = "double-gauss-50mm-f2"

@@ -48,7 +48,7 @@ def test_the_ground_gets_the_lux_that_were_asked_for() -> None:
 
 
 def test_flags_set_what_the_ground_gets(tmp_path) -> None:
-    from tests.support.make_gltf import Builder
+    from tests.support.formats.make_gltf import Builder
 
     path = Builder().glb(tmp_path / "s.glb")
     scene = SceneFlags(sky="1,0.5,0.2", env_lux="500").load(path)

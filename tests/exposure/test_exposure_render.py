@@ -14,7 +14,7 @@ import pytest
 import daguerre as dg
 from daguerre.cli import main
 from daguerre.color import spaces
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 #: A sky of 100 cd/m2: at f/4, 1/50 s and ISO 100 a value of 1 is 100 h0 / 50 lux s.
 SKY = 100.0

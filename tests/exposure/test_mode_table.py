@@ -16,7 +16,7 @@ import pytest
 import daguerre as dg
 from daguerre.cli import main
 from daguerre.color import spaces
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 SKY = 0.1
 #: f/4, 1/50 s: g of manual at ISO 1.

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 
 def write_scene(path: Path, strength: float = 1.0) -> Path:

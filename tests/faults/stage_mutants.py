@@ -107,7 +107,7 @@ HOSTILE = (
 
 def write_folder(root: Path) -> Path:
     """Writes the files beside the stages, and others outside that none may open."""
-    from tests.support.make_gltf import png
+    from tests.support.formats.make_gltf import png
 
     inside, outside = root / "inside", root / "outside"
     inside.mkdir(parents=True, exist_ok=True)

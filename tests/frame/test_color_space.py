@@ -15,7 +15,7 @@ from daguerre.color.spaces import LINEAR
 from daguerre.errors import UsageError
 from daguerre.frame.frame import Frame
 from daguerre.pictures.exr.crops import join_crops
-from tests.support.stated_light import AP0, AP1, REC709, TO_REC709, XYZ
+from tests.support.pictures.stated_light import AP0, AP1, REC709, TO_REC709, XYZ
 
 RNG = np.random.default_rng(3)
 RGB = RNG.random((6, 8, 3)).astype(np.float32) * 4

@@ -11,7 +11,7 @@ import pytest
 import daguerre as dg
 from daguerre.errors import UsageError
 from daguerre.frame.aovs import TABLE, Source
-from tests.support import scenes
+from tests.support.scene import scenes
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "ground-truth.md"
 SIZE = (12, 8)

@@ -26,10 +26,10 @@ from tests.importers.gltf import test_gltf_meshopt as meshopt
 from tests.importers.mitsuba import scene_files
 from tests.importers.pbrt import everything as pbrt_scene
 from tests.lenses.test_lens_fuzz import SEEDS as LENSES
-from tests.support import mesh_files, tracked
-from tests.support.nanovdb_files import Writer, segment
-from tests.support.packed_scenes import everything
-from tests.support.plate_frames import of_light
+from tests.support.formats import mesh_files, tracked
+from tests.support.formats.nanovdb_files import Writer, segment
+from tests.support.pictures.plate_frames import of_light
+from tests.support.scene.packed_scenes import everything
 
 from .messages import answers as answers
 from .messages import requests as requests

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from daguerre.pictures.tiff import LINEAR_RAW, TiffImage, write_tiff
-from tests.support.exif_files import SHOT, block, photograph, xmp
-from tests.support.plate_frames import of_light
+from tests.support.formats.exif_files import SHOT, block, photograph, xmp
+from tests.support.pictures.plate_frames import of_light
 
 #: A file's name and bytes.
 Seed = tuple[str, bytes]

@@ -123,7 +123,7 @@ def Xform "card" {
 
 def _folder(folder: Path) -> Path:
     """Writes the files that stages name, and the stage."""
-    from tests.support.make_gltf import png
+    from tests.support.formats.make_gltf import png
 
     (folder / "beside.usda").write_text(_BESIDE)
     (folder / "clip.usda").write_text(_BESIDE)

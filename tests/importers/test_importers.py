@@ -19,8 +19,9 @@ from pxr import UsdGeom, UsdLux
 import daguerre as dg
 from daguerre.files import formats
 from daguerre.files.formats import Format, register
-from tests.support import motion_files, scenes, stages
-from tests.support.make_gltf import Builder
+from tests.support.formats import motion_files, stages
+from tests.support.formats.make_gltf import Builder
+from tests.support.scene import scenes
 
 ROOT = Path(__file__).resolve().parents[2]
 #: The card of every sample: 2 m x 1 m, in the plane z = -3, its middle on the axis; named "card".

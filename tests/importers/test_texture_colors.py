@@ -12,7 +12,7 @@ import daguerre as dg
 from tests.importers.mitsuba.scene_files import loaded
 from tests.importers.pbrt.text import SQUARE, read
 from tests.shading.shading_scenes import Read, color_at, shining, surface
-from tests.support.stated_light import AP0, AP1, REC2020, TO_REC709, exr
+from tests.support.pictures.stated_light import AP0, AP1, REC2020, TO_REC709, exr
 
 COLOR = (0.4, 0.3, 0.2)
 OTHER = tuple(np.array(TO_REC709[AP1]) @ COLOR)

@@ -17,7 +17,7 @@ from daguerre.labels.annotations import Annotation, Annotations
 from daguerre.labels.boxes import rotation_of
 from daguerre.labels.categories import Categories, base_name
 from tests.rendering.test_truth import FPS, PINHOLE, PIXELS, SIZE, at, turned
-from tests.support import scenes
+from tests.support.scene import scenes
 
 CUBE = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
 FACES = [

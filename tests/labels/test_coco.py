@@ -14,7 +14,7 @@ from daguerre.cli import main
 from daguerre.labels.coco import CocoFile, runs_of
 from tests.labels.test_annotations import family
 from tests.rendering.test_truth import PINHOLE, at
-from tests.support.make_gltf import CORNERS, Builder
+from tests.support.formats.make_gltf import CORNERS, Builder
 
 SIZE = (120, 90)
 FLAGS = ["--res", "48x36", "--sky", "1,1,1", "--spp", "1", "--max-depth", "1", "--quiet"]

@@ -15,8 +15,8 @@ from daguerre.pictures.exr.write import attributes
 from daguerre.setup.camera import set_up
 from daguerre.setup.camera_facts import camera_facts
 from tests.camera.test_lens_models import LENS
-from tests.support import scenes
-from tests.support.statistical import batch_means, differences
+from tests.support.pictures.statistical import batch_means, differences
+from tests.support.scene import scenes
 
 Array = NDArray[np.float64]
 NM = 560.0

@@ -20,8 +20,8 @@ from daguerre.errors import InputError
 from daguerre.lenses.errors import CODES, LensError
 from tests.bad_files.lens_imports import ZOOM
 from tests.lenses.test_lens_import import ANAMORPHIC, ASPHERE, ODD, PLACED
-from tests.support import lens_writers as write
-from tests.support.triplet import TRIPLET
+from tests.support.lenses import lens_writers as write
+from tests.support.lenses.triplet import TRIPLET
 
 #: Bytes that these formats give a meaning to, and numbers that break things.
 TOKENS = tuple(

@@ -15,7 +15,7 @@ import pytest
 from daguerre import lenses
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.library import FOLDER
-from tests.support import lens_writers as write
+from tests.support.lenses import lens_writers as write
 
 Data = dict[str, Any]
 GLASS = {"nd": 1.62041, "vd": 60.32}

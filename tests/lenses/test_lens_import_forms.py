@@ -25,7 +25,7 @@ from tests.lenses.test_lens_import import (
     original,
     row,
 )
-from tests.support import lens_writers as write
+from tests.support.lenses import lens_writers as write
 
 
 @pytest.mark.parametrize("kind", ["XASPHERE", "XOSPHERE"])

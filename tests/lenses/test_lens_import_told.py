@@ -10,7 +10,7 @@ import pytest
 from daguerre import lenses
 from daguerre.lenses.errors import LensError
 from tests.lenses.test_lens_import import ASPHERE, CENTRED, check_same, imported, original
-from tests.support import lens_writers as write
+from tests.support.lenses import lens_writers as write
 
 #: Files that are kept beside the project.
 CASES = Path(__file__).parents[3] / "shared" / "cases" / "files"

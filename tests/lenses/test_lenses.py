@@ -14,7 +14,7 @@ import pytest
 
 from daguerre import _core, lenses
 from daguerre.errors import InputError, UsageError
-from tests.support.lens_names import CLASSICS
+from tests.support.lenses.lens_names import CLASSICS
 
 SHARED = Path(__file__).parents[3] / "shared" / "data"
 WAVELENGTHS = {"F": 486.1327, "d": 587.5618, "C": 656.2725}

@@ -12,7 +12,7 @@ from daguerre.cli import main
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.zoom import Position, bracket
 from tests.bad_files.bases import seen
-from tests.support import odd_lenses
+from tests.support.lenses import odd_lenses
 
 FILES = list(odd_lenses.files())
 all_files = pytest.mark.parametrize(

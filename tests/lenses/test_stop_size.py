@@ -16,8 +16,8 @@ from daguerre import lenses
 from daguerre.cli import main
 from daguerre.lenses.errors import LensError
 from tests.faults.scene import write_scene
-from tests.support import lens_writers as write
-from tests.support.triplet import TRIPLET
+from tests.support.lenses import lens_writers as write
+from tests.support.lenses.triplet import TRIPLET
 
 #: Files that are kept beside the project.
 CASES = Path(__file__).parents[3] / "shared" / "cases" / "files"

@@ -18,8 +18,8 @@ from daguerre.distortion.lens import LensDistortion
 from daguerre.distortion.rectified import RectifiedView
 from daguerre.errors import UsageError
 from daguerre.pictures.exr.reader import ExrReader
-from tests.support import scenes
-from tests.support.make_gltf import triangle
+from tests.support.formats.make_gltf import triangle
+from tests.support.scene import scenes
 
 cv2 = pytest.importorskip("cv2")
 

@@ -11,7 +11,7 @@ import daguerre as dg
 from daguerre.cli import main
 from daguerre.errors import MismatchError
 from daguerre.pictures.exr import crops
-from tests.support import scenes
+from tests.support.scene import scenes
 
 SIZE = (40, 150)  # more rows than a band
 WHOLE = (0, 0, *SIZE)

@@ -13,7 +13,7 @@ from daguerre.errors import InputError
 from daguerre.pictures.images import decode
 from daguerre.pictures.light import read_environment
 from daguerre.pictures.reading import size
-from tests.support.make_gltf import jpeg, png
+from tests.support.formats.make_gltf import jpeg, png
 
 HDRI = Path(__file__).parents[3] / "shared" / "data" / "hdri"
 

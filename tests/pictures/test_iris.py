@@ -8,7 +8,7 @@ import pytest
 
 from daguerre.errors import InputError
 from daguerre.pictures.iris import read_grey
-from tests.support.make_gltf import png
+from tests.support.formats.make_gltf import png
 
 
 def chunk(name, data):

@@ -18,7 +18,17 @@ from daguerre.pictures.iris import read_grey
 from daguerre.pictures.light import read_environment
 from daguerre.pictures.stated_colors import of_exr
 from daguerre.plates.files import read as read_plate
-from tests.support.stated_light import AP0, AP1, P3, REC709, REC2020, TO_REC709, XYZ, exr, hdr
+from tests.support.pictures.stated_light import (
+    AP0,
+    AP1,
+    P3,
+    REC709,
+    REC2020,
+    TO_REC709,
+    XYZ,
+    exr,
+    hdr,
+)
 
 RNG = np.random.default_rng(7)
 #: Greys with a little colour, which every space here has without negative numbers.

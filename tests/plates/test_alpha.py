@@ -9,8 +9,8 @@ import pytest
 
 import daguerre as dg
 from tests.plates.test_truth import CASES, GLASS, RED, SIZE, Case, look_at, real, shifted, thin
-from tests.support import scenes
-from tests.support.statistical import differences
+from tests.support.pictures.statistical import differences
+from tests.support.scene import scenes
 
 
 def alone(case: Case, sky: tuple[float, float, float] | None = (0.4, 0.5, 0.7)) -> dg.Scene:

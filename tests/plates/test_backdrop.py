@@ -13,8 +13,8 @@ from daguerre.cli import main
 from daguerre.frame.over import change_of_rgb
 from daguerre.rendering.session import Session
 from tests.plates.test_truth import CASES, SIZE
-from tests.support.make_gltf import triangle
-from tests.support.statistical import differences
+from tests.support.formats.make_gltf import triangle
+from tests.support.pictures.statistical import differences
 
 OPTIONS = {"resolution": SIZE, "spp": 32, "light_paths": "off"}
 

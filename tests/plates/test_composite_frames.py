@@ -13,7 +13,7 @@ from PIL import Image
 
 from daguerre.cli import main
 from daguerre.plates.composite.shots import SEEDS, seed_of
-from tests.support.plate_frames import of_light, ramp
+from tests.support.pictures.plate_frames import of_light, ramp
 
 SHAPE = (150, 240)
 SENSOR, ISO = "sony-a7r-ii", 3200

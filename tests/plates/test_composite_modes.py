@@ -14,7 +14,7 @@ from daguerre.exposure.lux_seconds import display_gain
 from daguerre.frame.picture import Picture
 from daguerre.plates.composite.composite import composite
 from daguerre.plates.composite.in_raw import composite_raw
-from tests.support.plate_frames import of_light
+from tests.support.pictures.plate_frames import of_light
 
 SHAPE = (16, 24)
 LUX_S, ISO = 0.4 * 10 / 0.18 / 400, 400.0

@@ -20,7 +20,7 @@ from daguerre.frame.cryptomatte import Cryptomatte, hash_of
 from daguerre.rendering import merging, passes
 from daguerre.rendering.session import Session
 from tests.plates.test_truth import DISTORTED, GLASS, POSE, RED, real, shifted, thin
-from tests.support import scenes
+from tests.support.scene import scenes
 
 SIZE = (48, 32)
 ALL = "object,material,asset"

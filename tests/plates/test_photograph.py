@@ -12,7 +12,7 @@ from daguerre.frame.picture import Picture
 from daguerre.plates.files import read
 from daguerre.plates.photograph import encoded
 from daguerre.plates.shot_facts import exif_number, shot_facts
-from tests.support.plate_frames import FACTS, of_light, ramp
+from tests.support.pictures.plate_frames import FACTS, of_light, ramp
 
 SHAPE = (64, 96)
 TOLD = {"isoSpeed": 400, "lensMake": "Canon", "lensModel": "EF50mm f/1.8 STM", "focus": 2.5}

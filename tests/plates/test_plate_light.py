@@ -15,7 +15,7 @@ from daguerre.frame.over import change_of_rgb
 from daguerre.plates.photo_light import photo_light
 from tests.plates.test_catchers import ground_and_ball
 from tests.plates.test_truth import BATCHES, GLASS, MATTE, SIZE, SPP, Case, real, shifted, thin
-from tests.support.statistical import differences
+from tests.support.pictures.statistical import differences
 
 MIRROR = dg.Material(dg.Conductor((0.9, 0.8, 0.7), 0.0))
 CASES = {

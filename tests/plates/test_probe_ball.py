@@ -9,7 +9,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.errors import InputError
-from tests.support.light_probes import ball_picture, exposure, grid, mirror, save, world
+from tests.support.pictures.light_probes import ball_picture, exposure, grid, mirror, save, world
 
 MIDDLE = (0.15, -0.1, -5.0)
 FOV = math.degrees(2 * math.atan(240 / 600))

@@ -8,7 +8,7 @@ import pytest
 import daguerre as dg
 from daguerre.errors import InputError, UsageError
 from daguerre.plates.probe import response
-from tests.support.light_probes import exposure, grid, save, world
+from tests.support.pictures.light_probes import exposure, grid, save, world
 
 SECONDS = (1 / 500, 1 / 125, 1 / 30, 1 / 8)
 

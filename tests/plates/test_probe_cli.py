@@ -11,7 +11,7 @@ import pytest
 
 from daguerre.cli import main
 from daguerre.pictures.light import read_environment
-from tests.support.light_probes import ball_picture, exposure, grid, mirror, save, world
+from tests.support.pictures.light_probes import ball_picture, exposure, grid, mirror, save, world
 
 SKY = np.array([0.3, 0.7, -0.4]) / np.linalg.norm([0.3, 0.7, -0.4])
 

@@ -10,7 +10,7 @@ import pytest
 import daguerre as dg
 from daguerre.color.spectra import luminance_of_rgb
 from daguerre.errors import UsageError
-from tests.support.light_probes import ball_picture, exposure, grid, save
+from tests.support.pictures.light_probes import ball_picture, exposure, grid, save
 
 FOV = math.degrees(2 * math.atan(240 / 600))
 SUN = np.array([0.5, 0.6, 0.4]) / np.linalg.norm([0.5, 0.6, 0.4])

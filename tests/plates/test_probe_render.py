@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from tests.support.light_probes import ball_picture, grid, mirror, save, world
-from tests.support.scenes import sphere
+from tests.support.pictures.light_probes import ball_picture, grid, mirror, save, world
+from tests.support.scene.scenes import sphere
 
 FOV = math.degrees(2 * math.atan(240 / 600))
 #: Columns of world_from_camera: right, up, back.

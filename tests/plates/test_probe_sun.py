@@ -12,7 +12,7 @@ from daguerre.color.spectra import luminance_of_rgb
 from daguerre.errors import InputError, UsageError
 from daguerre.plates.probe.latlong import solid_angles
 from daguerre.plates.probe.restore import ground_illuminance
-from tests.support.light_probes import ball_picture, grid, mirror, save
+from tests.support.pictures.light_probes import ball_picture, grid, mirror, save
 
 WIDTH, HEIGHT = 1024, 512
 TOWARD = np.array([0.4, 0.5, -0.6]) / np.linalg.norm([0.4, 0.5, -0.6])

@@ -20,8 +20,8 @@ from daguerre.cli import main
 from daguerre.frame.over import change_of_rgb
 from tests.plates.test_catchers import ground_and_ball
 from tests.plates.test_truth import ALPHA, Case
-from tests.support import tracked
-from tests.support.statistical import differences
+from tests.support.formats import tracked
+from tests.support.pictures.statistical import differences
 
 MOMENTS = tracked.path(4)
 FRAMES = (1, 2)

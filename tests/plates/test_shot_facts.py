@@ -14,7 +14,7 @@ from daguerre.pictures.exif_reader import exif_tags
 from daguerre.pictures.xmp import xmp_tags
 from daguerre.plates.files import read
 from daguerre.plates.probe.shots import read_shot
-from tests.support.exif_files import (
+from tests.support.formats.exif_files import (
     RATIONAL,
     SHORT,
     SHOT,

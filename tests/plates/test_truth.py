@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.frame.over import AUTO, DIFFERENCE, FORMS, change_of_rgb
-from tests.support import scenes
-from tests.support.statistical import differences
+from tests.support.pictures.statistical import differences
+from tests.support.scene import scenes
 
 SIZE = (72, 48)
 BATCHES, SPP = 8, 48

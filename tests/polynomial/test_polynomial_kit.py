@@ -14,7 +14,7 @@ import daguerre as dg
 import daguerre.polynomial as po
 from daguerre.errors import InputError, UsageError
 from daguerre.lenses import glasses
-from tests.support.lens_names import CLASSICS
+from tests.support.lenses.lens_names import CLASSICS
 
 D_LINE = 587.5618
 ROOT = Path(__file__).resolve().parents[2]

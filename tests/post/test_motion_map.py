@@ -18,7 +18,7 @@ from daguerre.post.picture import Band, Canvas
 from daguerre.post.warp import Warp
 from daguerre.post.warp_step import WarpStep
 from tests.post.test_post import post, read, write
-from tests.support.motion_scenes import TIME, card, move
+from tests.support.scene.motion_scenes import TIME, card, move
 
 WIDTH, HEIGHT = 120, 90
 CENTRE, FOCAL = (60.0, 45.0), (100.0, 100.0)

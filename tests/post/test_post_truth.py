@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre as dg
-from tests.support.motion_scenes import TIME, card, move
+from tests.support.scene.motion_scenes import TIME, card, move
 
 SIZE = (150, 100)
 OPTIONS = {"resolution": SIZE, "spp": 64, "filter": "box", "light_paths": "off"}

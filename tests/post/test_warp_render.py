@@ -10,7 +10,7 @@ from daguerre import lenses
 from daguerre.analysis.bench import set_up
 from daguerre.distortion.lens import LensDistortion
 from daguerre.post.effects.distortion import CHANNEL_NM
-from tests.support import scenes
+from tests.support.scene import scenes
 
 LENS = "canon-ef-11-24mm-f4"
 SIZE, PITCH = (300, 200), 36 / 300

@@ -18,7 +18,7 @@ from numpy.polynomial.polynomial import polyfit
 from daguerre import lenses
 from daguerre.lenses.glasses.catalogue import LINE_C, LINE_D, LINE_F
 from daguerre.lenses.medium import Medium
-from tests.support.line_glass import on_the_line
+from tests.support.lenses.line_glass import on_the_line
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCH, DATA = ROOT / "bench", ROOT.parent / "shared" / "data" / "reality"

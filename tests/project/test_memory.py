@@ -14,7 +14,7 @@ from daguerre import memory, units
 from daguerre.cli import main
 from daguerre.errors import UsageError
 from daguerre.rendering.session import Session
-from tests.support.make_gltf import triangle
+from tests.support.formats.make_gltf import triangle
 
 GB = 10**9
 

@@ -20,7 +20,7 @@ import pytest
 import daguerre as dg
 from tests.bad_files import CASES
 from tests.bad_files.bases import full, moving, seen
-from tests.support.make_gltf import png
+from tests.support.formats.make_gltf import png
 
 STRACE = shutil.which("strace")
 pytestmark = [

@@ -12,7 +12,7 @@ import pytest
 import daguerre as dg
 
 ROOT = Path(__file__).parents[2]
-SCRIPT = ROOT / "tests" / "support" / "typed_user.py"
+SCRIPT = ROOT / "tests" / "support" / "program" / "typed_user.py"
 DOCS = [*ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/*"), ROOT / "README.md"]
 IMPORT = re.compile(r"^(?:import|from) daguerre(?:\.(\w+)|.*? import ([\w, ]+))", re.MULTILINE)
 

@@ -13,8 +13,8 @@ import daguerre as dg
 from daguerre.errors import MismatchError, UsageError
 from daguerre.rendering import adaptive, merging, passes, rounds
 from daguerre.rendering.session import Session
-from tests.support import scenes
-from tests.support.statistical import differences
+from tests.support.pictures.statistical import differences
+from tests.support.scene import scenes
 
 SIZE = (40, 24)
 LENS = "petzval-100mm-f2.2"

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.scene.materials import Gltf, TextureSlot
-from tests.support import scenes
-from tests.support.blur import ALPHA, blurred, case, disagreement, frozen, mean_of_stills
-from tests.support.motion_scenes import OPEN, TIME, pattern, pinhole, sky
-from tests.support.statistical import differences
+from tests.support.pictures.blur import ALPHA, blurred, case, disagreement, frozen, mean_of_stills
+from tests.support.pictures.statistical import differences
+from tests.support.scene import scenes
+from tests.support.scene.motion_scenes import OPEN, TIME, pattern, pinhole, sky
 
 Picture = NDArray[np.float64]
 Array = NDArray[np.float64]

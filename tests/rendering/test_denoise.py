@@ -20,7 +20,8 @@ from daguerre.rendering.denoise import (
     noise_after,
 )
 from daguerre.rendering.session import Session
-from tests.support import fake_denoiser, scenes
+from tests.support.program import fake_denoiser
+from tests.support.scene import scenes
 
 SIZE = (40, 24)
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from daguerre.frame.frame import Frame
 from daguerre.rendering.denoise import denoise
 from daguerre.rendering.denoise_catchers import REACH, clean_catchers
-from tests.support import fake_denoiser
+from tests.support.program import fake_denoiser
 
 Image = NDArray[np.float32]
 SIZE = (40, 64)

@@ -12,7 +12,8 @@ import pytest
 
 import daguerre as dg
 from daguerre.cli import main
-from tests.support import outgoing_scenes, pbrt_syntax
+from tests.support.formats import pbrt_syntax
+from tests.support.scene import outgoing_scenes
 
 
 @pytest.fixture

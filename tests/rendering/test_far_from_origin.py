@@ -13,7 +13,7 @@ from daguerre.labels.annotations import annotate
 from daguerre.maps.ray_map import raymap
 from daguerre.rendering.session import Session
 from daguerre.setup import built_scene
-from tests.support.scenes import at, quad, sphere
+from tests.support.scene.scenes import at, quad, sphere
 
 SIZE = (48, 32)
 #: Whole cells; the last is an orbit.

@@ -16,7 +16,7 @@ from daguerre.rendering.output import Output
 from daguerre.rendering.picture import Picture, View
 from daguerre.rendering.reporter import PreviewPicture, Reporter
 from daguerre.rendering.session import Session
-from tests.support import scenes
+from tests.support.scene import scenes
 
 
 def layout(**keeps: object) -> _core.FilmLayout:

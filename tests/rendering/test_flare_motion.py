@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.rendering.session import Session
-from tests.support import scenes
-from tests.support.blur import Case, case
-from tests.support.motion_scenes import OPEN, TIME, turn
+from tests.support.pictures.blur import Case, case
+from tests.support.scene import scenes
+from tests.support.scene.motion_scenes import OPEN, TIME, turn
 
 LENS = "tessar-50mm-f2.8"
 SIZE = (6, 4)  # few lines, so that each sees much of what is drawn

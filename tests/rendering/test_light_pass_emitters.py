@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.scene.materials import Gltf, TextureSlot
-from tests.support import scenes
-from tests.support.light_proof import (
+from tests.support.pictures.light_proof import (
     CLOSE,
     SIZE,
     SMALL,
@@ -29,7 +28,8 @@ from tests.support.light_proof import (
     thin,
     wall,
 )
-from tests.support.statistical import differences
+from tests.support.pictures.statistical import differences
+from tests.support.scene import scenes
 
 Matrix = NDArray[np.float64]
 

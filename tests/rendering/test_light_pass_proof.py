@@ -13,8 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from tests.support import scenes
-from tests.support.light_proof import (
+from tests.support.pictures.light_proof import (
     CLOSE,
     SMALL,
     Case,
@@ -27,7 +26,8 @@ from tests.support.light_proof import (
     thin,
     wall,
 )
-from tests.support.statistical import differences
+from tests.support.pictures.statistical import differences
+from tests.support.scene import scenes
 
 
 def lamps(x: float = 0.0, y: float = 0.0, spread: float = 1.0) -> dg.Scene:

@@ -16,8 +16,8 @@ from daguerre.errors import MismatchError, UsageError
 from daguerre.rendering.merging import merge
 from daguerre.rendering.passes import pass_of, read_pass, write_pass
 from daguerre.rendering.session import Session
-from tests.support import scenes
-from tests.support.statistical import batch_means, differences
+from tests.support.pictures.statistical import batch_means, differences
+from tests.support.scene import scenes
 
 SIZE = (32, 20)
 PLAN = (4000.0, 0.0)

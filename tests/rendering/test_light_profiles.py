@@ -11,9 +11,9 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from tests.support import scenes
-from tests.support.light_proof import CLOSE, Case, check, pictures, thin, wall
-from tests.support.statistical import differences
+from tests.support.pictures.light_proof import CLOSE, Case, check, pictures, thin, wall
+from tests.support.pictures.statistical import differences
+from tests.support.scene import scenes
 
 Matrix = NDArray[np.float64]
 SIZE = (48, 32)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from tests.support import scenes
+from tests.support.scene import scenes
 
 CUBE = np.array([(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], float)
 SIDES = (

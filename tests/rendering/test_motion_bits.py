@@ -9,8 +9,8 @@ import pytest
 
 import daguerre as dg
 from daguerre.scene.motion import SceneMotion
-from tests.support import motion_scenes
-from tests.support.motion_scenes import ball, card, floor, move, pinhole, sky, turn
+from tests.support.scene import motion_scenes
+from tests.support.scene.motion_scenes import ball, card, floor, move, pinhole, sky, turn
 
 SMALL: dict[str, Any] = {"resolution": (24, 16), "max_depth": 4}
 

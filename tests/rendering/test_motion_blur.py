@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import pytest
 
-from tests.support import motion_files, motion_scenes
-from tests.support.blur import blurred, disagreement, frozen, mean_of_stills
+from tests.support.formats import motion_files
+from tests.support.pictures.blur import blurred, disagreement, frozen, mean_of_stills
+from tests.support.scene import motion_scenes
 
 BATCHES = 6
 MOMENTS = 12

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.scene.materials import Gltf
-from tests.support import scenes
-from tests.support.blur import ALPHA
-from tests.support.motion_scenes import ball, dark, move, pinhole, turn
-from tests.support.statistical import Reference, differences
+from tests.support.pictures.blur import ALPHA
+from tests.support.pictures.statistical import Reference, differences
+from tests.support.scene import scenes
+from tests.support.scene.motion_scenes import ball, dark, move, pinhole, turn
 
 Picture = NDArray[np.float64]
 WHITE = Gltf(base_color=(1, 1, 1), unlit=True)

@@ -15,7 +15,7 @@ from daguerre.cli import main
 from daguerre.errors import InputError, MismatchError
 from daguerre.rendering import merging, passes, ranges
 from daguerre.rendering.session import Session
-from tests.support import scenes
+from tests.support.scene import scenes
 
 SIZE = (24, 16)
 

@@ -10,7 +10,7 @@ import pytest
 import daguerre as dg
 from daguerre.rendering.light_paths import OFF
 from daguerre.rendering.session import Session
-from tests.support import scenes
+from tests.support.scene import scenes
 
 SIZE = (240, 160)
 CAMERA = dg.Camera(lens="thin", focal_length=50, f_stop=2.0, focus_distance=1.2)

@@ -11,8 +11,8 @@ import pytest
 
 import daguerre as dg
 from daguerre.rendering.session import Session
-from tests.support import scenes
-from tests.support.statistical import batch_means, differences
+from tests.support.pictures.statistical import batch_means, differences
+from tests.support.scene import scenes
 
 SMALL = (32, 24)
 

@@ -17,8 +17,8 @@ from daguerre.cli import main
 from daguerre.errors import InputError, MismatchError, UsageError
 from daguerre.rendering.merging import merge
 from daguerre.rendering.session import Session
-from tests.support import scenes
-from tests.support.pass_files import through_files
+from tests.support.formats.pass_files import through_files
+from tests.support.scene import scenes
 
 LENS = "double-gauss-50mm-f2"
 SIZE = (36, 24)

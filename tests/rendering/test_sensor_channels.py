@@ -19,8 +19,8 @@ from daguerre.rendering.session import Session
 from daguerre.sensors import Sensor, bands
 from daguerre.sensors.bands import channels_from_bands
 from tests.rendering import test_flare
-from tests.support import scenes
-from tests.support.pass_files import through_files
+from tests.support.formats.pass_files import through_files
+from tests.support.scene import scenes
 
 SIZE = (36, 24)
 

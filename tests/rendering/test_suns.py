@@ -10,9 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
-from tests.support import scenes
-from tests.support.light_proof import Case, pictures
-from tests.support.statistical import Reference, batch_means, differences
+from tests.support.pictures.light_proof import Case, pictures
+from tests.support.pictures.statistical import Reference, batch_means, differences
+from tests.support.scene import scenes
 
 Picture = NDArray[np.float64]
 LUX = 3.0

@@ -16,7 +16,7 @@ from daguerre import lenses
 from daguerre.camera.rolling_shutter import RollingShutter
 from daguerre.cli import main
 from daguerre.errors import UsageError
-from tests.support import scenes
+from tests.support.scene import scenes
 
 SIZE = (24, 18)
 FPS = 10.0
@@ -303,7 +303,7 @@ def test_a_frame_warped_by_its_motion_is_the_next_frame() -> None:
 def test_channels_of_the_command_line_and_of_merged_passes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tests.support.make_gltf import Builder
+    from tests.support.formats.make_gltf import Builder
 
     monkeypatch.chdir(tmp_path)
     made = Builder()

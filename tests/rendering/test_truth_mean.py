@@ -15,7 +15,7 @@ from daguerre.cli import main
 from daguerre.errors import UsageError
 from daguerre.rendering.truth import GroundTruth
 from tests.rendering.test_truth import FPS, PINHOLE, SIZE, at, drifting, truth, turned, wall
-from tests.support import scenes
+from tests.support.scene import scenes
 
 MODEL = Projection("kannala_brandt", SIZE, (30.0, 30.0), None, (0.05, -0.01, 0, 0))
 LENS = "double-gauss-50mm-f2"
@@ -106,7 +106,7 @@ def test_means_are_the_same_each_time_and_with_few_rays_near_those_with_many() -
 
 
 def test_files_say_how_and_merge_keeps_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from tests.support.make_gltf import triangle
+    from tests.support.formats.make_gltf import triangle
 
     monkeypatch.chdir(tmp_path)
     made = triangle()

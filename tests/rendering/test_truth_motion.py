@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.setup.lens_motion import MODEL_BLUR
-from tests.support import motion_files, motion_scenes
-from tests.support.blur import Case
+from tests.support.formats import motion_files
+from tests.support.pictures.blur import Case
+from tests.support.scene import motion_scenes
 
 SIZE = (24, 16)
 FPS = 24.0

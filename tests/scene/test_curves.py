@@ -18,7 +18,7 @@ from daguerre.scene.framing import bounds
 from daguerre.scene.parts import Curves
 from daguerre.setup import scene as setup
 from daguerre.setup.content_hash import content_hash
-from tests.support import scenes
+from tests.support.scene import scenes
 
 Array = NDArray[np.float64]
 RANDOM = np.random.default_rng(5)

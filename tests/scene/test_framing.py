@@ -10,7 +10,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.scene.framing import bounds, frame_everything
-from tests.support import scenes
+from tests.support.scene import scenes
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])

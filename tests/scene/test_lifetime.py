@@ -11,7 +11,7 @@ import daguerre as dg
 from daguerre.checks import as_readonly, freeze_in_place
 from daguerre.rendering.session import Session
 from daguerre.setup.scene import build
-from tests.support import scenes
+from tests.support.scene import scenes
 
 
 def _arrays() -> dict[str, np.ndarray]:

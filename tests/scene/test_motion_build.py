@@ -14,8 +14,8 @@ from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.content_hash import content_hash
 from daguerre.setup.scene import build
 from daguerre.setup.scene_motion import MovingParts
-from tests.support import scenes
-from tests.support.make_gltf import triangle
+from tests.support.formats.make_gltf import triangle
+from tests.support.scene import scenes
 
 SQUARE = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
 FACES = [[0, 1, 2], [0, 2, 3]]

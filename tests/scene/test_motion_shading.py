@@ -12,7 +12,8 @@ import pytest
 import daguerre as dg
 from daguerre.errors import InputError
 from daguerre.setup.scene import build
-from tests.support import scenes, statistical
+from tests.support.pictures import statistical
+from tests.support.scene import scenes
 
 OPEN, CLOSE = 2.0, 2.5  # s
 MOMENTS = 16

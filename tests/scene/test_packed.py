@@ -26,7 +26,7 @@ from daguerre.scene.packed.rebuild import rebuilt
 from daguerre.sensors.writer import write as write_sensor
 from tests.faults.scene import write_scene
 from tests.fuzz import readers
-from tests.support.packed_scenes import everything
+from tests.support.scene.packed_scenes import everything
 
 TINY = {"resolution": (40, 30), "spp": 2, "threads": 1}
 

@@ -13,7 +13,7 @@ import daguerre as dg
 from daguerre.scene import ears, polygons
 from daguerre.scene.polygons import triangulate, weld
 from daguerre.scene.subdivision import Refiner, Rules, Subdivision
-from tests.support import control_meshes as meshes
+from tests.support.scene import control_meshes as meshes
 
 
 def areas(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:

@@ -13,8 +13,8 @@ import daguerre as dg
 from daguerre.cli import main
 from daguerre.files import extras
 from daguerre.rendering.session import Session
-from tests.support import scenes
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
+from tests.support.scene import scenes
 
 SQUARE = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
 FACES = [[0, 1, 2], [0, 2, 3]]

@@ -17,9 +17,9 @@ from daguerre.scene.subdivision.faces import Faces as Control
 from daguerre.scene.subdivision.loop import Loop
 from daguerre.scene.subdivision.refiner import MAX_FACES
 from daguerre.scene.subdivision.scheme import Scheme
-from tests.support import control_meshes as meshes
-from tests.support.control_meshes import Faces, Mesh
-from tests.support.plain_subdivision import Plain
+from tests.support.scene import control_meshes as meshes
+from tests.support.scene.control_meshes import Faces, Mesh
+from tests.support.scene.plain_subdivision import Plain
 
 Edges = dict[tuple[int, int], float]
 RING = ((0, 1), (1, 3), (3, 2), (2, 0))

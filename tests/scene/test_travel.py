@@ -19,8 +19,9 @@ import daguerre as dg
 from daguerre.checks import as_readonly
 from daguerre.rendering.session import Session
 from daguerre.setup.content_hash import content_hash
-from tests.support import motion_files, motion_scenes, scenes
-from tests.support.make_gltf import Builder, png
+from tests.support.formats import motion_files
+from tests.support.formats.make_gltf import Builder, png
+from tests.support.scene import motion_scenes, scenes
 
 EYE = np.eye(4)
 ASIDE = motion_scenes.move(x=1)

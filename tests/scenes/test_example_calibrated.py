@@ -14,7 +14,7 @@ import pytest
 import daguerre as dg
 from daguerre.calibration import read, read_kalibr
 from daguerre.cli import main
-from tests.support.example_scenes import made_twice
+from tests.support.scene.example_scenes import made_twice
 
 ROOT = Path(__file__).resolve().parents[2]
 FILES = ROOT / "scenes" / "calibrated"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from tests.support.example_scenes import made_twice
+from tests.support.scene.example_scenes import made_twice
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.importers.gltf.extensions import KNOWN
-from tests.support.example_scenes import make
+from tests.support.scene.example_scenes import make
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENES = ("shelf", "glass", "octopus", "garden", "street", "packed")

@@ -17,7 +17,7 @@ import daguerre as dg
 from daguerre import analysis, cli
 from daguerre.analysis.ghosts import Ghosts
 from daguerre.post.recipe import from_words
-from tests.support.example_scenes import make
+from tests.support.scene.example_scenes import make
 
 ROOT = Path(__file__).resolve().parents[2]
 GALLERY = ROOT / "docs" / "gallery"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from tests.support.example_scenes import make
+from tests.support.scene.example_scenes import make
 
 SCENES = ("arcade", "lamps", "long_table", "photographer", "caustics", "blocks")
 

@@ -12,7 +12,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.pictures.images import decode
-from tests.support.example_scenes import make
+from tests.support.scene.example_scenes import make
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Moving nodes or cameras by name, and two times at which to look.

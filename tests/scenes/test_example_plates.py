@@ -14,7 +14,7 @@ import typer.main
 import daguerre as dg
 from daguerre import cli
 from daguerre.frame.over import change_of_rgb
-from tests.support.example_scenes import made_twice
+from tests.support.scene.example_scenes import made_twice
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "script" / "docs" / "gallery"))

@@ -12,7 +12,7 @@ from daguerre.cli import main
 from daguerre.color import illuminants
 from daguerre.sensors import load, names
 from daguerre.sensors.writer import members
-from tests.support.flats import flat
+from tests.support.pictures.flats import flat
 
 NAMES = names()
 BODIES = [name for name in NAMES if not name.startswith("ideal")]

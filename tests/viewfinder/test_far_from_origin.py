@@ -8,7 +8,7 @@ import daguerre as dg
 from daguerre.viewfinder.dials import Dials
 from daguerre.viewfinder.stage import Stage
 from daguerre.viewfinder.work import _session
-from tests.support.scenes import at, lamp_room
+from tests.support.scene.scenes import at, lamp_room
 
 
 def placed(x: float) -> dg.Camera:

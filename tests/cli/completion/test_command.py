@@ -9,7 +9,7 @@ import pytest
 
 from daguerre.cli import main
 from daguerre.cli.completion.command import SHELLS
-from tests.support.shell_line import SCRIPTS, Shell
+from tests.support.program.shell_line import SCRIPTS, Shell
 
 
 def test_the_script_is_printed_whole(

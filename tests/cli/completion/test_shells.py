@@ -12,7 +12,7 @@ import pytest
 
 from daguerre.cli import main
 from daguerre.cli.completion.shells import complete
-from tests.support.shell_line import SCRIPTS, Shell, environment
+from tests.support.program.shell_line import SCRIPTS, Shell, environment
 
 LENS = "canon-35mm-f1.8"
 #: Lines, and what a TAB makes of them.

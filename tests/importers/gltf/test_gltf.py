@@ -13,7 +13,7 @@ import pytest
 from daguerre.checks import as_readonly
 from daguerre.errors import InputError, UsageError
 from daguerre.importers.gltf import reader as gltf
-from tests.support.make_gltf import CORNERS, Builder, glb_bytes, triangle
+from tests.support.formats.make_gltf import CORNERS, Builder, glb_bytes, triangle
 
 FAR = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 2, 0], [1, 2, 0]]
 

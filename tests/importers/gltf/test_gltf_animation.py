@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from daguerre.importers.gltf import reader as gltf
-from tests.support.make_gltf import Builder, triangle
+from tests.support.formats.make_gltf import Builder, triangle
 
 HALF = math.sqrt(0.5)
 QUARTER_TURN = [0, 0, HALF, HALF]  # 90 degrees about z

@@ -11,7 +11,7 @@ from daguerre.errors import InputError
 from daguerre.importers.gltf import reader as gltf
 from tests.bad_files.bases import full, moving
 from tests.bad_files.uris import LEAVING, surroundings
-from tests.support.make_gltf import CORNERS, triangle
+from tests.support.formats.make_gltf import CORNERS, triangle
 
 
 def test_the_undamaged_file_is_read(tmp_path):

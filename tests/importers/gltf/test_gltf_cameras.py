@@ -12,7 +12,7 @@ from daguerre.errors import InputError
 from daguerre.importers.gltf import reader as gltf
 from daguerre.importers.gltf.cameras import _EXTRAS, _snake
 from daguerre.scene.lights import DirectionalLight, PointLight, SpotLight
-from tests.support.make_gltf import Builder, triangle
+from tests.support.formats.make_gltf import Builder, triangle
 
 
 def with_camera(perspective=None, node=None, **camera) -> Builder:

@@ -16,7 +16,7 @@ from daguerre.errors import InputError
 from daguerre.files import extras
 from daguerre.importers.gltf import reader as gltf
 from daguerre.pictures import images
-from tests.support.make_gltf import Builder, png, triangle
+from tests.support.formats.make_gltf import Builder, png, triangle
 
 KTX2 = {
     key: bytes.fromhex(text)

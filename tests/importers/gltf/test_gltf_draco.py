@@ -12,7 +12,7 @@ import pytest
 from daguerre.errors import InputError
 from daguerre.files import extras
 from daguerre.importers.gltf import reader as gltf
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 NAME = "KHR_draco_mesh_compression"
 # A wavy sheet of 9 x 7 vertices.

@@ -16,7 +16,7 @@ from daguerre.importers.gltf import placing as gltf_placing
 from daguerre.importers.gltf import reader as gltf
 from daguerre.setup import camera as camera_setup
 from daguerre.setup import focus as focusing
-from tests.support.make_gltf import CORNERS, Builder, triangle
+from tests.support.formats.make_gltf import CORNERS, Builder, triangle
 
 HALF = math.sqrt(0.5)
 

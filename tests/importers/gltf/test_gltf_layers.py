@@ -11,7 +11,7 @@ from daguerre.errors import InputError
 from daguerre.importers.gltf import reader as gltf
 from daguerre.scene.materials import Gltf
 from tests.importers.gltf.test_gltf_materials import kind, read, with_material
-from tests.support.make_gltf import png
+from tests.support.formats.make_gltf import png
 
 LAYERS = ("clearcoat", "sheen", "anisotropy", "iridescence")
 

@@ -11,8 +11,8 @@ import daguerre as dg
 from daguerre.importers.gltf import reader as gltf
 from daguerre.scene.materials import Gltf
 from tests.importers.gltf.test_gltf_materials import kind, with_material
-from tests.support import scenes
-from tests.support.make_gltf import png
+from tests.support.formats.make_gltf import png
+from tests.support.scene import scenes
 
 THROUGH = "KHR_materials_diffuse_transmission"
 GLOSS = "KHR_materials_pbrSpecularGlossiness"

@@ -13,7 +13,7 @@ from daguerre.errors import InputError
 from daguerre.importers.gltf import reader as gltf
 from daguerre.pictures import images
 from daguerre.scene.materials import Gltf, TextureSlot
-from tests.support.make_gltf import Builder, jpeg, png, triangle
+from tests.support.formats.make_gltf import Builder, jpeg, png, triangle
 
 RED = np.array([[[255, 0, 0], [0, 255, 0]]], np.uint8)
 UV = [[0, 0], [1, 0], [0, 1]]

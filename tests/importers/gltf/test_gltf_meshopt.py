@@ -11,7 +11,7 @@ import pytest
 
 from daguerre.errors import InputError
 from daguerre.importers.gltf import reader as gltf
-from tests.support.make_gltf import Builder
+from tests.support.formats.make_gltf import Builder
 
 STREAMS = {
     key: bytes.fromhex(text)

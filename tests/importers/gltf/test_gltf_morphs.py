@@ -11,7 +11,7 @@ import pytest
 
 from daguerre.errors import InputError
 from daguerre.importers.gltf import reader as gltf
-from tests.support.make_gltf import CORNERS, Builder
+from tests.support.formats.make_gltf import CORNERS, Builder
 
 UP = [[0, 0, 1], [0, 0, 2], [0, 0, 3]]
 SIDE = [[8, 0, 0]] * 3

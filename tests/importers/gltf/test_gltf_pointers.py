@@ -14,7 +14,7 @@ from daguerre.errors import InputError
 from daguerre.files.json_item import Item
 from daguerre.importers.gltf import reader as gltf
 from daguerre.importers.gltf.pointers import parse
-from tests.support.make_gltf import CORNERS, Builder, png, triangle
+from tests.support.formats.make_gltf import CORNERS, Builder, png, triangle
 
 HALF = math.sqrt(0.5)
 

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from daguerre.errors import InputError
 from daguerre.importers.gltf import reader as gltf
 from tests.bad_files.bases import full, moving, seen
-from tests.support.make_gltf import COMPONENTS, TYPES, Builder, glb_bytes
+from tests.support.formats.make_gltf import COMPONENTS, TYPES, Builder, glb_bytes
 
 QUIET = settings(
     max_examples=60,

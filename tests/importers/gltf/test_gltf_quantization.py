@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from daguerre.importers.gltf import reader as gltf
-from tests.support.make_gltf import Builder, png
+from tests.support.formats.make_gltf import Builder, png
 
 WHOLE = {"i1": 127, "u1": 255, "i2": 32767, "u2": 65535}
 EVERY = [(dtype, flag) for dtype in WHOLE for flag in (False, True)]

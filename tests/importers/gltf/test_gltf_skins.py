@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from daguerre.errors import InputError
 from daguerre.importers.gltf import reader as gltf
 from daguerre.scene import skinning
-from tests.support.make_gltf import CORNERS, Builder
+from tests.support.formats.make_gltf import CORNERS, Builder
 
 HALF = math.sqrt(0.5)
 QUARTER = [0, 0, HALF, HALF]  # 90 degrees about z

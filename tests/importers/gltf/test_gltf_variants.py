@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 import daguerre as dg
 from daguerre.cli import app
-from tests.support.make_gltf import Builder, triangle
+from tests.support.formats.make_gltf import Builder, triangle
 
 NAME = "KHR_materials_variants"
 WHERE = rf"meshes\[0\]\.primitives\[0\]\.extensions\.{NAME}\.mappings"

@@ -12,7 +12,7 @@ import pytest
 import daguerre as dg
 from daguerre.errors import DaguerreError
 from daguerre.scene.materials import Gltf, TextureSlot
-from tests.support.motion_scenes import card_mesh, move, pinhole, sky, turn
+from tests.support.scene.motion_scenes import card_mesh, move, pinhole, sky, turn
 
 NOTHING = np.diag([0.0, 0, 0, 1])
 FLAT = np.diag([1.0, 0, 1, 1])

@@ -11,8 +11,8 @@ import pytest
 from daguerre.importers.gltf import reader as gltf
 from daguerre.motion.resample import resample
 from daguerre.setup.vertices import resample_vertices
-from tests.support.make_gltf import CORNERS, Builder, png, triangle
-from tests.support.same_scene import scene_differences
+from tests.support.formats.make_gltf import CORNERS, Builder, png, triangle
+from tests.support.scene.same_scene import scene_differences
 
 HALF = math.sqrt(0.5)
 UP = [[0, 0, 1]] * 3

@@ -9,7 +9,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.scene.materials import Gltf, TextureSlot
-from tests.support import scenes
+from tests.support.scene import scenes
 
 UPRIGHT = np.array([[0, 1], [1, 1], [1, 0], [0, 0]], float)  # u to the right, v down
 TILT = (0.3, 0.2)  # of the normal: to the right and up

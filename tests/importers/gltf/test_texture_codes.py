@@ -18,8 +18,8 @@ from daguerre import Camera, render
 from daguerre.importers.gltf import reader as gltf
 from daguerre.pictures import images
 from tests.importers.gltf.test_gltf_materials import with_material
-from tests.support import scenes
-from tests.support.make_gltf import png
+from tests.support.formats.make_gltf import png
+from tests.support.scene import scenes
 
 CODE = 128
 LINEAR = CODE / 255

@@ -11,8 +11,8 @@ import pytest
 import daguerre as dg
 from daguerre.pictures import images
 from daguerre.scene.materials import Gltf, TextureSlot
-from tests.support import scenes
-from tests.support.make_gltf import png
+from tests.support.formats.make_gltf import png
+from tests.support.scene import scenes
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 PIXELS = (32, 20)

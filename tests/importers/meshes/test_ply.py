@@ -14,7 +14,7 @@ from daguerre.files.notes import Notes
 from daguerre.importers import file_bytes
 from daguerre.importers.meshes import ply, text_numbers
 from daguerre.importers.meshes.file_mesh import FileMesh
-from tests.support import mesh_files as write
+from tests.support.formats import mesh_files as write
 
 #: A pyramid of a quadrangle and triangles.
 POINTS = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1)], np.float32)

@@ -13,7 +13,7 @@ import pytest
 import daguerre as dg
 from daguerre.importers import file_bytes
 from daguerre.importers.meshes import serialized
-from tests.support import mesh_files as write
+from tests.support.formats import mesh_files as write
 
 _RNG = np.random.default_rng(4)
 MESHES: list[dict[str, Any]] = [

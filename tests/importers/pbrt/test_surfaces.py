@@ -13,7 +13,7 @@ import daguerre as dg
 from daguerre.color import srgb
 from daguerre.importers.pbrt.subsurface import MEASURED, diffuse_reflectance
 from daguerre.scene.materials import Boundary, Coated, Conductor, Dielectric, Diffuse, Mix
-from tests.support import nanovdb_files
+from tests.support.formats import nanovdb_files
 
 from .text import MIRROR, SQUARE, picture, read, world_points
 

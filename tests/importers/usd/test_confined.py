@@ -13,7 +13,7 @@ import pytest
 from pxr import Sdf
 
 import daguerre as dg
-from tests.support.pipes import watched
+from tests.support.program.pipes import watched
 
 _HEAD = "#usda 1.0\n( metersPerUnit = 1\n{} )\n"
 _CARD = (

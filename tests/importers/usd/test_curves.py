@@ -10,7 +10,7 @@ import pytest
 from pxr import Usd, UsdGeom
 
 import daguerre as dg
-from tests.support import stages
+from tests.support.formats import stages
 
 _COUNTS = (2, 3)
 _POINTS = [(0, 0, 0), (0, 1, 0), (1, 0, 0), (1, 1, 0), (1, 2, 1)]

@@ -16,7 +16,7 @@ from daguerre.importers.usd.domes import Strength
 from daguerre.importers.usd.lights import Emission
 from daguerre.motion.values import keys
 from daguerre.pictures.panorama import resampled
-from tests.support import stages
+from tests.support.formats import stages
 
 _ROWS = 64
 #: Directions of a dome, all apart, and the colour of its picture there.

@@ -11,7 +11,7 @@ from pxr import Usd, UsdGeom, UsdShade
 
 import daguerre as dg
 from daguerre.cli import main
-from tests.support import stages
+from tests.support.formats import stages
 
 _FRAMED = "the file has no usable camera; the camera 'framing' shows everything"
 

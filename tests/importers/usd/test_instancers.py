@@ -16,8 +16,8 @@ import daguerre as dg
 from daguerre.files.notes import Notes
 from daguerre.importers.usd.instancers import read_copies
 from daguerre.importers.usd.values import Clock
-from tests.support import stages
-from tests.support.blur import blurred, case, disagreement, frozen, mean_of_stills
+from tests.support.formats import stages
+from tests.support.pictures.blur import blurred, case, disagreement, frozen, mean_of_stills
 
 _RATE = 24.0
 #: USD does not scale quaternions to length 1; those of half precision are that wrong.

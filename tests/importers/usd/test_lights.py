@@ -16,7 +16,7 @@ import daguerre as dg
 from daguerre.importers.usd.lighting import glows, unlit
 from daguerre.importers.usd.lights import MOST, Emission, bounded, cone_size
 from daguerre.motion.values import keys
-from tests.support import stages
+from tests.support.formats import stages
 
 _KINDS = {
     "sphere": UsdLux.SphereLight,

@@ -15,7 +15,7 @@ import daguerre as dg
 from daguerre.files.notes import Notes
 from daguerre.importers.usd.meshes import Choice, Meshes
 from daguerre.importers.usd.values import Clock
-from tests.support import stages
+from tests.support.formats import stages
 
 CYCLES = [0, 1, 2, 3]
 

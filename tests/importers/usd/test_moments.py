@@ -21,7 +21,7 @@ from daguerre.motion.values import at as value_at
 from daguerre.motion.values import is_dynamic
 from daguerre.scene.packed.gathered import Gathered
 from daguerre.setup.content_hash import content_hash
-from tests.support import stages
+from tests.support.formats import stages
 
 from .walls import differences_within, exact
 

@@ -16,7 +16,7 @@ from daguerre.files.notes import Notes
 from daguerre.importers.usd.points import read_points
 from daguerre.importers.usd.values import Clock
 from daguerre.motion.values import at as value_at
-from tests.support import stages
+from tests.support.formats import stages
 
 _RATE = 24.0
 _SPOTS = [(0, 0, 0), (1, 0, 0), (0, 2, 0)]

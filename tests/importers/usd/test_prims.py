@@ -10,7 +10,7 @@ import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom
 
 import daguerre as dg
-from tests.support import stages
+from tests.support.formats import stages
 
 _DEEP = 1500
 

@@ -10,8 +10,8 @@ import numpy as np
 from pxr import Gf, Sdf, UsdGeom, UsdLux, UsdShade
 
 import daguerre as dg
-from tests.support import stages
-from tests.support.make_gltf import Builder, png
+from tests.support.formats import stages
+from tests.support.formats.make_gltf import Builder, png
 
 #: A wavy sheet with normals and texture coordinates (origin at the top left).
 _N = 9

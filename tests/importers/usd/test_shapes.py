@@ -14,7 +14,7 @@ import daguerre as dg
 from daguerre.importers.usd.shapes import ball, is_solid, solid_of
 from daguerre.importers.usd.values import Clock
 from daguerre.scene.shapes import ShapeMesh
-from tests.support import stages
+from tests.support.formats import stages
 
 _CLOCK = Clock("f.usda", 24.0, 0.0)
 #: Volume and area of solids of these sizes; one radius is 2, the other 1.

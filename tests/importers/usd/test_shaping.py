@@ -11,7 +11,7 @@ import pytest
 from pxr import Gf, Sdf, UsdLux
 
 import daguerre as dg
-from tests.support import stages
+from tests.support.formats import stages
 
 #: A photometric file: 100 cd straight down, 40 cd at 30 degrees, nothing from 60 degrees on.
 _IES = """IESNA:LM-63-2002

@@ -16,8 +16,8 @@ from daguerre.importers.usd.skeletons import Skeletons
 from daguerre.importers.usd.values import Clock
 from daguerre.motion.values import at as value_at
 from daguerre.motion.values import keys
-from tests.support import stages
-from tests.support.blur import blurred, case, disagreement, frozen, mean_of_stills
+from tests.support.formats import stages
+from tests.support.pictures.blur import blurred, case, disagreement, frozen, mean_of_stills
 
 _RATE = 24.0
 _JOINTS = ("a", "a/b", "a/b/c", "a/d", "e")

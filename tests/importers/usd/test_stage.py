@@ -18,7 +18,7 @@ from pxr import Sdf, Usd, UsdGeom, UsdShade, UsdUtils
 import daguerre as dg
 from daguerre.importers.usd.assets import Assets
 from daguerre.importers.usd.layer_files import check_file
-from tests.support import stages
+from tests.support.formats import stages
 
 _HEAD = '#usda 1.0\n(\n    metersPerUnit = 1\n    upAxis = "Y"\n'
 _CARD = (

@@ -14,7 +14,7 @@ from daguerre.files.notes import Notes
 from daguerre.importers.usd.transforms import joined, local
 from daguerre.importers.usd.values import Clock
 from daguerre.motion.values import at as value_at
-from tests.support import stages
+from tests.support.formats import stages
 
 _RATE = 24.0
 _VALUES = {

@@ -17,11 +17,11 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdShade
 
 import daguerre as dg
 from daguerre.scene.materials import TextureSlot
-from tests.support import stages
-from tests.support.make_gltf import png
-from tests.support.same_triangles import triangle_differences
-from tests.support.stage_twin import write_twin
-from tests.support.statistical import batch_means, differences
+from tests.support.formats import stages
+from tests.support.formats.make_gltf import png
+from tests.support.formats.stage_twin import write_twin
+from tests.support.pictures.statistical import batch_means, differences
+from tests.support.scene.same_triangles import triangle_differences
 
 _SHARED = Path(__file__).resolve().parents[4] / "shared" / "data"
 CHESS = Path(

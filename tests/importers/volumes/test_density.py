@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from tests.support import mesh_files, nanovdb_files
+from tests.support.formats import mesh_files, nanovdb_files
 
 _VALUES = np.random.default_rng(5).random((2, 3, 4, 1)).astype(np.float32)
 

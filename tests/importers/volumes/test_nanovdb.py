@@ -13,7 +13,16 @@ import pytest
 import daguerre as dg
 from daguerre.importers.volumes import nanovdb
 from daguerre.importers.volumes.grid import FileGrid
-from tests.support.nanovdb_files import GRID, LOWER, ROOT, TILE, TREE, UPPER, Writer, segment
+from tests.support.formats.nanovdb_files import (
+    GRID,
+    LOWER,
+    ROOT,
+    TILE,
+    TREE,
+    UPPER,
+    Writer,
+    segment,
+)
 
 #: Cells in leaves of several nodes, on both sides of 0.
 CELLS = {(0, 0, 0): 1.0, (1, 2, 3): 2.0, (7, 7, 7): 3.0, (8, 7, 7): 4.0, (130, 20, 5): 5.0,

@@ -10,7 +10,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.importers.volumes import vol
-from tests.support import mesh_files as write
+from tests.support.formats import mesh_files as write
 
 _VALUES = np.random.default_rng(5).random((2, 3, 4, 3)).astype(np.float32)
 

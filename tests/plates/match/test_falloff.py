@@ -14,7 +14,7 @@ from daguerre.plates.match.falloff import falloff_of, polynomial, radii_squared
 from daguerre.plates.match.lens_model import lens_falloff
 from daguerre.plates.photograph import Photograph
 from daguerre.post import vignette
-from tests.support.plate_frames import of_light
+from tests.support.pictures.plate_frames import of_light
 
 SHAPE = (600, 900)
 TERMS = (-0.6, 0.25, -0.1)

@@ -12,8 +12,8 @@ from daguerre.plates.match.grain import FOLDED, HALF, Grain
 from daguerre.plates.match.grain_draw import with_grain
 from daguerre.plates.match.grain_measure import grain_of
 from daguerre.plates.photograph import Photograph, encoded
-from tests.support.plate_edges import squares
-from tests.support.plate_frames import of_light
+from tests.support.pictures.plate_edges import squares
+from tests.support.pictures.plate_frames import of_light
 
 ROWS, COLUMNS, PATCH = 3, 5, 192
 #: Patches over six stops; the darkest are some hundredths of white.

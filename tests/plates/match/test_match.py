@@ -17,8 +17,8 @@ from daguerre.plates.match.grain import Grain
 from daguerre.plates.match.like import PlateLook
 from daguerre.plates.match.plate_raw import raw_of
 from daguerre.plates.match.sharpness import FREQUENCIES, sharpness_of
-from tests.support.plate_edges import squares
-from tests.support.plate_frames import of_light, wedge
+from tests.support.pictures.plate_edges import squares
+from tests.support.pictures.plate_frames import of_light, wedge
 
 LENS = {"lensMake": "Canon", "lensModel": "EF24-70mm f/2.8L II USM", "nominalFocalLength": 35.0}
 SHAPE = (600, 900)

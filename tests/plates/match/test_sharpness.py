@@ -10,8 +10,8 @@ from daguerre.plates.match import blur, sharpness
 from daguerre.plates.match.blur import Blur, gaussian
 from daguerre.plates.match.sharpness import FREQUENCIES, sharpness_of
 from daguerre.plates.photograph import Photograph
-from tests.support.plate_edges import squares
-from tests.support.plate_frames import of_light
+from tests.support.pictures.plate_edges import squares
+from tests.support.pictures.plate_frames import of_light
 
 SHAPE = (600, 900)
 #: Frequencies that count: above, little is left of edges.

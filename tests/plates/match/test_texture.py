@@ -14,8 +14,8 @@ from daguerre.plates.match.grain import Grain
 from daguerre.plates.match.grain_measure import grain_of
 from daguerre.plates.match.likely import white_electrons
 from daguerre.plates.photograph import Photograph
-from tests.support.plate_frames import of_light
-from tests.support.plate_textures import SHAPE, TEXTURES, with_strip
+from tests.support.pictures.plate_frames import of_light
+from tests.support.pictures.plate_textures import SHAPE, TEXTURES, with_strip
 
 SENSOR, STEPS = "sony-a7r-ii", 14
 WIDTH = SHAPE[1] // STEPS

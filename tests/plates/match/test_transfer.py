@@ -9,8 +9,8 @@ from daguerre import sensors
 from daguerre.errors import InputError
 from daguerre.plates.match import cut, transfer
 from daguerre.plates.match.blocks import Blocks
-from tests.support.plate_frames import numbers_of, of_light, partly_textured, ramp, wedge
-from tests.support.plate_textures import TEXTURES
+from tests.support.pictures.plate_frames import numbers_of, of_light, partly_textured, ramp, wedge
+from tests.support.pictures.plate_textures import TEXTURES
 
 SHAPE = (1600, 2400)
 MODES = [

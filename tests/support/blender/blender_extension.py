@@ -16,7 +16,7 @@ import numpy as np
 
 import daguerre as dg
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "extensions" / "blender"
 NAME = "daguerre_extension"
 #: Blender's value of a picture over ours, of the stand-in.

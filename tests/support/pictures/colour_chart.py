@@ -12,7 +12,7 @@ from daguerre.color.spectra import rgb_from_xyz
 from daguerre.frame.raw import Raw
 from daguerre.sensors import load
 
-_DATA = json.loads((Path(__file__).parents[1] / "data" / "colour_chart.json").read_text())
+_DATA = json.loads((Path(__file__).parents[2] / "data" / "colour_chart.json").read_text())
 ROWS, COLUMNS, PATCH = 4, 6, 24
 WHITE_LX_S = 10 / 0.18  # of ISO 1; a white surface has a developed value of 1
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import bpy
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "script" / "docs" / "gallery"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "script" / "docs" / "gallery"))
 from blender_lens import set_lens
 
 

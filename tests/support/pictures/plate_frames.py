@@ -11,7 +11,7 @@ from scipy import ndimage
 from daguerre.frame.frame import Frame
 from daguerre.frame.raw import Raw
 from daguerre.plates.photograph import RawNumbers
-from tests.support.flats import flat
+from tests.support.pictures.flats import flat
 
 FACTS: dict[str, Any] = {
     "expTime": 1 / 125,

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre as dg
-from tests.support import scenes
-from tests.support.statistical import Rare, batch_means, differences, seldom_met
+from tests.support.pictures.statistical import Rare, batch_means, differences, seldom_met
+from tests.support.scene import scenes
 
 SIZE = (48, 32)
 GAUSS = "double-gauss-50mm-f2"

@@ -15,9 +15,9 @@ import time
 from pathlib import Path
 from typing import Self
 
-from tests.support.pseudo_terminal import open_terminal
+from tests.support.program.pseudo_terminal import open_terminal
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 class Terminal:
@@ -36,7 +36,7 @@ class Terminal:
             fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "tests.support.fake_session", *arguments],
+            [sys.executable, "-m", "tests.support.program.fake_session", *arguments],
             stdin=slave,
             stdout=slave,
             stderr=slave,

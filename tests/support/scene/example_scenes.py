@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-SCRIPTS = Path(__file__).resolve().parents[2] / "scenes"
+SCRIPTS = Path(__file__).resolve().parents[3] / "scenes"
 
 
 def make(name: str, folder: Path, *flags: str) -> None:

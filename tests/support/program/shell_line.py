@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 import daguerre
-from tests.support.pseudo_terminal import need_terminal
+from tests.support.program.pseudo_terminal import need_terminal
 
 PACKAGES = Path(daguerre.__file__).parents[1]
 SCRIPTS = PACKAGES / "daguerre/cli/completion/scripts"

@@ -3,7 +3,7 @@
 Not part of the tests; run it again when a scene changes:
 
     pip install mitsuba==3.9.1
-    python tests/support/make_references.py [SCENE ...]
+    python tests/support/pictures/make_references.py [SCENE ...]
 
 Grey scenes in the monochrome variant: what it calls radiance 1 is Daguerre's luminance 1.
 Mitsuba multiplies the masking of both directions; Daguerre, as most renderers today, lets their
@@ -28,7 +28,7 @@ from mitsuba import ScalarTransform4f as To  # noqa: E402
 from references import scenes  # noqa: E402
 from references.description import Description, Lamp, Mesh, Surface, View  # noqa: E402
 
-FOLDER = Path(__file__).parents[1] / "references"
+FOLDER = Path(__file__).parents[2] / "references"
 BATCHES, SPP = 24, 2048
 
 
@@ -232,7 +232,7 @@ def main() -> None:
         header = {
             "scene": name,
             "renderer": f"mitsuba {mi.__version__} {mi.variant()}",
-            "command": f"python tests/support/make_references.py {name}",
+            "command": f"python tests/support/pictures/make_references.py {name}",
             "spp": SPP * BATCHES,
             "batches": BATCHES,
             "size": list(description.size),

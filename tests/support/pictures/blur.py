@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.scene.motion import SceneMotion
-from tests.support.statistical import differences
+from tests.support.pictures.statistical import differences
 
 Pictures = NDArray[np.float64]
 #: Weight of a still frame at a moment (s) in each pixel, broadcast to (H, W); its mean over the

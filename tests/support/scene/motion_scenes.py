@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.scene.materials import Gltf, TextureSlot
-from tests.support import scenes
-from tests.support.blur import Case, case
+from tests.support.pictures.blur import Case, case
+from tests.support.scene import scenes
 
 Matrix = NDArray[np.float64]
 OPEN = 0.4  # s

@@ -1,7 +1,8 @@
 """A session without the core: sums that anyone can check, at a speed that the test chooses.
 
-``python -m tests.support.fake_session render ...`` is the command line on top of it, so that tests
-can send signals to a real process at a known moment. ``FAKE_SECONDS`` is how long a sample takes.
+``python -m tests.support.program.fake_session render ...`` is the command line on top of it, so
+that tests can send signals to a real process at a known moment. ``FAKE_SECONDS`` is how long a
+sample takes.
 """
 
 from __future__ import annotations

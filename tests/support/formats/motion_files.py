@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 import daguerre as dg
-from tests.support import scenes
-from tests.support.blur import Case, case, without_motion
-from tests.support.make_gltf import Builder, png
-from tests.support.motion_scenes import OPEN, TIME, pattern
+from tests.support.formats.make_gltf import Builder, png
+from tests.support.pictures.blur import Case, case, without_motion
+from tests.support.scene import scenes
+from tests.support.scene.motion_scenes import OPEN, TIME, pattern
 
 QUAD = [0, 1, 2, 0, 2, 3]
 UV = [(0, 1), (1, 1), (1, 0), (0, 0)]
