@@ -13,7 +13,6 @@ import pytest
 
 import daguerre as dg
 from daguerre.pictures.png_chunks import is_complete
-from daguerre.rendering.coarse import coarse
 from daguerre.rendering.job import Job
 from daguerre.rendering.output import Output
 from daguerre.rendering.picture import Picture, View
@@ -115,16 +114,3 @@ def test_the_picture_has_the_same_bits_with_and_without(tmp_path: Path) -> None:
         True
     ]
     assert {frame.rgb.shape for frame, _ in reporter.seen} == {(32, 48, 3)}
-
-
-def test_the_first_look_is_the_picture_in_squares() -> None:
-    camera = dg.Camera(f_stop=8.0, focus_distance=5.0)
-    settings = dg.RenderSettings.of(resolution=(480, 320), crop=(100, 20, 400, 300), spp=16)
-    frame, built = coarse(scenes.lamp_room(), camera, settings)
-    fine = dg.render(scenes.lamp_room(), camera, settings=settings)
-    assert frame.rgb.shape == fine.rgb.shape == (280, 300, 3)
-    blocks = [f.rgb.clip(0, 2).reshape(7, 40, 10, 30, 3).mean((1, 3)) for f in (frame, fine)]
-    assert np.abs(blocks[0] - blocks[1]).mean() < 0.15 * blocks[1].mean()
-    assert len(np.unique(frame.rgb[..., 1])) <= 20_000
-    again, _ = coarse(scenes.lamp_room(), camera, settings, built)
-    np.testing.assert_array_equal(again.rgb, frame.rgb)

@@ -11,13 +11,13 @@ from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure
 from daguerre.camera.exposure_mode import is_automatic
 from daguerre.camera.settled import settled
-from daguerre.errors import DaguerreError, InputError
+from daguerre.errors import InputError
 from daguerre.scene.far import Place
 from daguerre.scene.scene import Scene
 from daguerre.setup.origin import origin_of
 
 from .checkpoint import INTERVAL_S, Checkpoint
-from .film_memory import check_denoised, check_picture, kept_films
+from .film_memory import check_denoised, kept_films
 from .loop import Loop
 from .picture import Picture
 from .reporter import Control, Finished, Reporter, Stopped
@@ -207,21 +207,7 @@ class Job:
         files = all(path.exists() for path in picture.output.written)
         return files and not single and not picture.output.checkpoint.exists()
 
-    def _first_look(self, picture: Picture) -> None:
-        """Shows a coarse picture before the set-up of the picture."""
-        from .coarse import coarse
-
-        check_picture(picture.settings.film.crop, picture.settings.film.resolution)
-        scene, camera = self.scene_of(picture), self.camera_of(picture)
-        try:
-            frame, self._built = coarse(scene, camera, picture.settings, self._built)
-        except DaguerreError:  # the session raises it if it concerns the picture, too
-            return
-        self.reporter.preview(picture.output.look(frame))
-
     def _render(self, picture: Picture, began: float, *, resume: bool) -> bool:
-        if self.reporter.previews and not resume:
-            self._first_look(picture)
         session = self.open(picture)
         self.opened(picture, session)
         setup_s = time.monotonic() - began
