@@ -59,8 +59,9 @@ class Film {
     void set_responses(Responses responses);
     const Responses& responses() const { return responses_; }
 
-    // Samples. Pixel coordinates are in the full frame; samples outside the film's region are ignored. A sample that is
-    // NaN, Inf or beyond kMaxFilmValue adds 0, and is counted as bad.
+    // Samples. Pixel coordinates are in the full frame; samples outside the film's region are ignored. A sample with light
+    // that is NaN, Inf or beyond kMaxFilmValue adds nothing, no coverage either, and is counted as bad; count() still
+    // counts it. Auxiliary values are checked by themselves, in add_aov().
 
     /// Counts a camera sample, once per sample and pixel. The count is the divisor of the mean.
     void count(int x, int y, std::uint32_t sample = 0);

@@ -97,10 +97,10 @@ void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wav
 /// The caller holds the lock of the pixel if other threads may write it.
 void Film::add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived) {
     CameraSums& pixel = of<Layer::sums>()[i];
-    if (count_of(Layer::coverage)) add_coverage(i, arrived);
     const bool alone = !count_of(Layer::catchers);
     if (!alone && !add_set(i, wavelengths, arrived)) return pixel.mark_bad(sample);
     if (!add_light(pixel, half(i, sample), i, sample, wavelengths, arrived.light, alone)) return;
+    if (count_of(Layer::coverage)) add_coverage(i, arrived);
     const int channels = count_of(Layer::channels);
     if (channels) add_channels(of<Layer::channels>(), i, channels, responses_.of(wavelengths, arrived.light));
 }

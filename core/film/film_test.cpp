@@ -402,6 +402,24 @@ TEST_CASE("sums that come as columns of words are added as a merge adds them") {
     CHECK_THROWS_AS(added.add_state("objects", {}, {}), Error);
 }
 
+TEST_CASE("a bad sample adds no coverage") {
+    const auto w = Wavelengths::sample(0.5f);
+    const CameraLight good{.light = 1.f, .white = 1, .covered = 1, .objects = {{{3, 1}}}, .object_count = 1};
+    const float worst = std::numeric_limits<float>::quiet_NaN();
+    for (const bool catchers : {false, true}) {
+        CAPTURE(catchers);
+        const FilmLayout layout{1, 1, 0, 0, {Layer::coverage, Layer::objects, {Layer::catchers, catchers}}};
+        Film film(layout), alone(layout);
+        for (Film* f : {&film, &alone}) f->add(0, 0, 0, w, good);
+        film.add(0, 0, 1, w, {.light = worst, .white = 1, .covered = 0.5f, .objects = {{{4, 0.5f}}}, .object_count = 1});
+        if (catchers) film.add_shared(0, 0, 2, w, {.light = 1.f, .with = worst, .white = 1, .covered = 0.25f});
+        CHECK(film.bad_sample_count() == (catchers ? 2 : 1));
+        CHECK(film.coverage() == std::vector{1.f});
+        for (const char* layer : {"coverage", "objects"})
+            CHECK(std::ranges::equal(film.state(layer).bytes, alone.state(layer).bytes));
+    }
+}
+
 TEST_CASE("a film in the memory of another one is empty") {
     const FilmLayout all{3, 2, 1, 1, {Layer::aovs, Layer::splats, Layer::flare, Layer::halves, Layer::coverage,
                                       Layer::objects, Layer::catchers, {Layer::bands, 2}}};
