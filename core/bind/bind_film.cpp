@@ -201,11 +201,12 @@ void bind_film(nb::module_& m) {
         .def("ranked", &ranked, "ids"_a, "ranks"_a,
              "The same by groups of objects, each object's under its id: ids and shares (H, W, ranks), the number of "
              "pixels with more groups, and the largest share of a pixel that those leave out.")
-        .def("set_rgb", [](const Film& f, bool with_objects) {
+        .def("catcher_rgb", [](const Film& f, bool with_objects) {
                  return triples(f, to_rgb(f.means("catchers", with_objects ? 0 : 3, 3)));
              },
-             "with_objects"_a, "Light of the set, linear Rec.709 (H, W, 3), with the objects there or without.")
-        .def("set_channels",
+             "with_objects"_a,
+             "Light of catchers and background, linear Rec.709 (H, W, 3), with or without the objects.")
+        .def("catcher_channels",
              [](const Film& f, bool with_objects) {
                  const int each = f.count_of(Layer::channels);
                  return stacks(f, f.means("catcher_channels", with_objects ? 0 : each, each), each);

@@ -15,7 +15,7 @@ struct ObjectCover {
 };
 
 /// Light and coverage that a camera sample adds to a pixel. In a film with catchers, `light` is the light of the objects
-/// alone; `with` and `without` are the light of the set with the objects present and absent.
+/// alone; `with` and `without` are the light of catchers and background with the objects present and absent.
 struct CameraLight {
     Spectrum light{0.f}, with{0.f}, without{0.f};
     float white = 0;     // weight of the sample: the light of a white world

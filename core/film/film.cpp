@@ -27,7 +27,7 @@ static_assert(in_order(), "kLayers has a row for each Layer, at its place");
 static_assert(most_bytes() < std::size_t(std::numeric_limits<std::ptrdiff_t>::max()) / kMostFilmPixels,
               "the bytes of the largest film can be counted");
 
-std::string words(const FilmLayout& layout) {
+std::string described(const FilmLayout& layout) {
     std::string all = std::to_string(layout.width) + " x " + std::to_string(layout.height) + " px at (" +
                       std::to_string(layout.offset_x) + ", " + std::to_string(layout.offset_y) + ")";
     Stores::for_each_row([&](const auto& row) {
@@ -50,7 +50,7 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     const Vec3f x = rgb_from_xyz({1, 0, 0}), y = rgb_from_xyz({0, 1, 0}), z = rgb_from_xyz({0, 0, 1});
     for (int i = 0; i < 3; ++i) rgb_from_xyz_[i] = {x[i], y[i], z[i]};
     stores_ = Stores(layout);
-    if (lit()) row_locks_.resize(std::size_t(kLockStride) * std::size_t(layout.height));
+    if (has_emitter_layers()) row_locks_.resize(std::size_t(kLockStride) * std::size_t(layout.height));
 }
 
 void Film::set_responses(Responses responses) {
@@ -61,7 +61,7 @@ void Film::set_responses(Responses responses) {
 }
 
 void Film::merge(const Film& other) {
-    if (!(layout_ == other.layout_)) throw input_error("film", "merge", words(layout_), words(other.layout_));
+    if (!(layout_ == other.layout_)) throw input_error("film", "merge", described(layout_), described(other.layout_));
     stores_.merge(other.stores_);
 }
 

@@ -32,7 +32,7 @@ struct Ranked {
     std::vector<std::uint32_t> ids;   // id of the group, `ranks` per pixel; 0: no further group
     std::vector<float> shares;        // share of the pixel, for each of `ids`
     std::uint64_t cut_pixels = 0;     // number of pixels with more groups than ranks
-    float most_cut = 0;               // largest share that is left out in any of these pixels
+    float most_cut = 0;               // largest sum of the shares that these pixels leave out
 };
 
 class Film {
@@ -40,7 +40,7 @@ class Film {
     friend class KeptFilms;
 
   public:
-    /// Bytes of the sums of a pixel; for Layer::objects, with two objects per pixel.
+    /// Bytes of the sums of a pixel. The lists of Layer::objects grow with the picture; counted here: two objects.
     static std::size_t pixel_bytes(const FilmLayout& layout) { return Stores::pixel_bytes(layout.layers); }
     /// Throws Error, before it allocates, for an invalid size or invalid layers.
     explicit Film(FilmLayout layout);
@@ -68,14 +68,14 @@ class Film {
     /// Adds the whole light of a camera sample in a pixel, because the variance needs the square of the sum. Not thread
     /// safe for the same pixel: tiles own their pixels.
     void add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
-    /// Thread-safe add(), for lenses with dispersion, which sends wavelengths to the pixels of other tiles. No thread may
-    /// call add() for the same pixel meanwhile.
-    void add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
+    /// Thread-safe add(), which locks the pixel, for lenses with dispersion, which sends wavelengths to the pixels of other
+    /// tiles. No thread may call add() for the same pixel meanwhile.
+    void add_locked(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
     /// Adds a colour to the picture, but not to bands and channels.
     void add(int x, int y, std::uint32_t sample, Vec3f xyz);
     void add_aov(int x, int y, std::uint32_t sample, const AovSample& aov);
     /// Adds the light of a path from an emitter to Layer::splats or Layer::flare. Thread safe. The mean divides these sums
-    /// by the count of camera samples. Splats are separate from camera samples because their variance is that estimate of
+    /// by the count of camera samples. Splats are separate from camera samples because their variance is estimated as for
     /// a compound Poisson process, sum(s^2) / n^2, without the square of the mean.
     void splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, Spectrum radiance,
                Layer layer = Layer::splats);
@@ -158,18 +158,21 @@ class Film {
         const bool inside = column >= 0 && column < layout_.width && row >= 0 && row < layout_.height;
         return inside ? row * layout_.width + column : -1;
     }
-    Plane<ColorSums>& arrivals(Layer layer) { return layer == Layer::flare ? of<Layer::flare>() : of<Layer::splats>(); }
-    /// Whether paths from emitters add to the film.
-    bool lit() const { return count_of(Layer::splats) || count_of(Layer::flare); }
+    /// Sums of a layer that paths from emitters add to.
+    Plane<ColorSums>& emitter_sums(Layer layer) {
+        return layer == Layer::flare ? of<Layer::flare>() : of<Layer::splats>();
+    }
+    bool has_emitter_layers() const { return count_of(Layer::splats) || count_of(Layer::flare); }
 
-    /// Sums of X, Y, Z of the half picture that a camera sample, or a splat to `layer`, also goes to; null: none.
-    ValueSum* half(std::size_t i, std::uint32_t sample);
-    ValueSum* half(std::size_t i, std::uint32_t sample, Layer layer);
+    /// Sums of X, Y, Z over the samples with even indices (Layer::halves), which a camera sample, or a splat to `layer`, is
+    /// also added to; null: the index is odd, or there are no such sums.
+    ValueSum* even_sample_sums(std::size_t i, std::uint32_t sample);
+    ValueSum* even_sample_sums(std::size_t i, std::uint32_t sample, Layer layer);
     /// Adds light to XYZ and bands. Returns false if the sample is bad.
-    bool add_light(ColorSums& sums, ValueSum* half, std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
-                   Spectrum radiance, bool squares = true);
+    bool add_light(ColorSums& sums, ValueSum* even_sums, std::size_t i, std::uint32_t sample,
+                   const Wavelengths& wavelengths, Spectrum radiance, bool squares = true);
     void add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
-    bool add_set(std::size_t i, const Wavelengths& wavelengths, const CameraLight& arrived);
+    bool add_catchers(std::size_t i, const Wavelengths& wavelengths, const CameraLight& arrived);
     void add_coverage(std::size_t i, const CameraLight& arrived);
     /// Lock of a row of the region; for splats without bands, and for the channels of all splats.
     std::uint32_t& row_lock(int y) { return row_locks_[std::size_t(kLockStride) * (y - layout_.offset_y)]; }
@@ -185,7 +188,7 @@ class Film {
     /// Film of this layout out of the memory that KeptFilms keeps; null: none. Frees kept memory of another layout, unless
     /// the new film is much smaller.
     static std::unique_ptr<Film> take_kept(const FilmLayout& layout);
-    /// Bytes of all planes.
+    /// Bytes of all layers.
     std::size_t state_bytes() const;
 
     FilmLayout layout_;

@@ -30,13 +30,14 @@ class Lock {
     std::atomic_ref<std::uint32_t> lock_;
 };
 
-/// Adds a colour to sums of a pixel, and to its half picture unless `half` is null. Returns false if the sample is bad.
-bool add_color(ColorSums& sums, ValueSum* half, const RgbRows& rgb_from_xyz, Vec3f xyz, bool squares = true) {
+/// Adds a colour to sums of a pixel, and to `even_sums` unless null (see Film::even_sample_sums). Returns false if the
+/// sample is bad.
+bool add_color(ColorSums& sums, ValueSum* even_sums, const RgbRows& rgb_from_xyz, Vec3f xyz, bool squares = true) {
     if (!(fits_film(xyz.x) && fits_film(xyz.y) && fits_film(xyz.z))) return false;
     sums.xyz[0].add(xyz.x);
     sums.xyz[1].add(xyz.y);
     sums.xyz[2].add(xyz.z);
-    if (half) half[0].add(xyz.x), half[1].add(xyz.y), half[2].add(xyz.z);
+    if (even_sums) even_sums[0].add(xyz.x), even_sums[1].add(xyz.y), even_sums[2].add(xyz.z);
     if (squares) sums.add_squares(rgb_from_xyz, xyz);
     return true;
 }
@@ -58,11 +59,11 @@ void add_channels(Plane<ValueSum>& plane, std::size_t i, int count, Spectrum val
 
 }  // namespace
 
-ValueSum* Film::half(std::size_t i, std::uint32_t sample) {
+ValueSum* Film::even_sample_sums(std::size_t i, std::uint32_t sample) {
     return of<Layer::halves>().empty() || sample % 2 ? nullptr : of<Layer::halves>()[i].own;
 }
 
-ValueSum* Film::half(std::size_t i, std::uint32_t sample, Layer layer) {
+ValueSum* Film::even_sample_sums(std::size_t i, std::uint32_t sample, Layer layer) {
     return of<Layer::halves>().empty() || sample % 2 || layer != Layer::splats ? nullptr : of<Layer::halves>()[i].splats;
 }
 
@@ -77,17 +78,17 @@ void Film::add(int x, int y, std::uint32_t sample, Vec3f xyz) {
     const std::int64_t i = find(x, y);
     if (i < 0) return;
     CameraSums& pixel = of<Layer::sums>()[i];
-    if (!add_color(pixel, half(i, sample), rgb_from_xyz_, xyz)) pixel.mark_bad(sample);
+    if (!add_color(pixel, even_sample_sums(i, sample), rgb_from_xyz_, xyz)) pixel.mark_bad(sample);
 }
 
 void Film::add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived) {
-    if (count_of(Layer::bands) && lit())   // splats and samples share the sums of bands
-        return add_shared(x, y, sample, wavelengths, arrived);
+    if (count_of(Layer::bands) && has_emitter_layers())   // splats and samples share the sums of bands
+        return add_locked(x, y, sample, wavelengths, arrived);
     const std::int64_t i = find(x, y);
     if (i >= 0) add_arrived(i, sample, wavelengths, arrived);
 }
 
-void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived) {
+void Film::add_locked(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived) {
     const std::int64_t i = find(x, y);
     if (i < 0) return;
     const Lock lock(of<Layer::sums>()[i].lock);
@@ -97,23 +98,24 @@ void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wav
 /// The caller holds the lock of the pixel if other threads may write it.
 void Film::add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived) {
     CameraSums& pixel = of<Layer::sums>()[i];
-    const bool alone = !count_of(Layer::catchers);
-    if (!alone && !add_set(i, wavelengths, arrived)) return pixel.mark_bad(sample);
-    if (!add_light(pixel, half(i, sample), i, sample, wavelengths, arrived.light, alone)) return;
+    const bool without_catchers = !count_of(Layer::catchers);
+    if (!without_catchers && !add_catchers(i, wavelengths, arrived)) return pixel.mark_bad(sample);
+    if (!add_light(pixel, even_sample_sums(i, sample), i, sample, wavelengths, arrived.light, without_catchers))
+        return;
     if (count_of(Layer::coverage)) add_coverage(i, arrived);
     const int channels = count_of(Layer::channels);
     if (channels) add_channels(of<Layer::channels>(), i, channels, responses_.of(wavelengths, arrived.light));
 }
 
-/// Adds light of the set. Returns false if the sample is bad. The picture over a plate is `light` + `with` - `without`, so
+/// Adds light of catchers. Returns false if the sample is bad. The picture over a plate is `light` + `with` - `without`, so
 /// its squares go into the variance, and add_light() then adds no squares.
-bool Film::add_set(std::size_t i, const Wavelengths& wavelengths, const CameraLight& arrived) {
+bool Film::add_catchers(std::size_t i, const Wavelengths& wavelengths, const CameraLight& arrived) {
     const Vec3f light = wavelengths.to_xyz(arrived.light), with = wavelengths.to_xyz(arrived.with),
                 without = wavelengths.to_xyz(arrived.without);
     for (int k = 0; k < 3; ++k)
         if (!fits_film(light[k]) || !fits_film(with[k]) || !fits_film(without[k])) return false;
-    XyzSums* const set = &of<Layer::catchers>()[2 * i];
-    for (int k = 0; k < 3; ++k) set[0].xyz[k].add(with[k]), set[1].xyz[k].add(without[k]);
+    XyzSums* const catchers = &of<Layer::catchers>()[2 * i];
+    for (int k = 0; k < 3; ++k) catchers[0].xyz[k].add(with[k]), catchers[1].xyz[k].add(without[k]);
     of<Layer::sums>()[i].add_squares(rgb_from_xyz_, light + with - without);
     const int channels = count_of(Layer::channels);
     if (!channels) return true;
@@ -132,9 +134,9 @@ void Film::add_coverage(std::size_t i, const CameraLight& arrived) {
         (*objects).add(i, c.object, coverage_steps(c.covered));
 }
 
-bool Film::add_light(ColorSums& sums, ValueSum* half, std::size_t i, std::uint32_t sample,
+bool Film::add_light(ColorSums& sums, ValueSum* even_sums, std::size_t i, std::uint32_t sample,
                      const Wavelengths& wavelengths, Spectrum radiance, bool squares) {
-    if (!add_color(sums, half, rgb_from_xyz_, wavelengths.to_xyz(radiance), squares)) {
+    if (!add_color(sums, even_sums, rgb_from_xyz_, wavelengths.to_xyz(radiance), squares)) {
         of<Layer::sums>()[i].mark_bad(sample);
         return false;
     }
@@ -170,11 +172,11 @@ void Film::splat(int x, int y, std::uint32_t sample, const Wavelengths& waveleng
         const Vec3f xyz = wavelengths.to_xyz(radiance);
         return splat_row(x, y, sample, std::span(&xyz, 1), layer, std::span(&channels, count ? 1 : 0));
     }
-    Plane<ColorSums>& sums = arrivals(layer);
+    Plane<ColorSums>& sums = emitter_sums(layer);
     DG_CHECK(sums.size(), >, std::size_t(i));
     {
         const Lock lock(of<Layer::sums>()[i].lock);
-        if (!add_light(sums[i], half(i, sample, layer), i, sample, wavelengths, radiance)) return;
+        if (!add_light(sums[i], even_sample_sums(i, sample, layer), i, sample, wavelengths, radiance)) return;
     }
     const Lock lock(row_lock(y));
     add_channels(of<Layer::channel_splats>(), i, count, channels);
@@ -188,13 +190,13 @@ void Film::splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> 
     const std::int64_t row = std::int64_t(y) - layout_.offset_y;
     if (begin >= end || row < 0 || row >= layout_.height) return;
     const std::int64_t first = row * layout_.width - left;   // index of the first pixel, which may be outside
-    Plane<ColorSums>& sums = arrivals(layer);
+    Plane<ColorSums>& sums = emitter_sums(layer);
     DG_CHECK(sums.size(), >=, std::size_t(first + std::int64_t(end)));
     const Lock lock(row_lock(y));
     for (std::size_t k = begin; k < end; ++k) {
         if (xyz[k] == Vec3f{0, 0, 0} && channels.empty()) continue;
         const std::size_t i = std::size_t(first + std::int64_t(k));
-        if (add_color(sums[i], half(i, sample, layer), rgb_from_xyz_, xyz[k])) {
+        if (add_color(sums[i], even_sample_sums(i, sample, layer), rgb_from_xyz_, xyz[k])) {
             if (!channels.empty())
                 add_channels(of<Layer::channel_splats>(), i, count_of(Layer::channels), channels[k]);
             continue;
@@ -222,7 +224,7 @@ void Film::add_flare_row(int x, int y, std::span<const FlareSteps> steps, std::s
 
 void Film::prefetch(int x0, int x1, int y0, int y1, Layer layer) {
     constexpr std::size_t kLine = 64;   // bytes
-    const Plane<ColorSums>& sums = arrivals(layer);
+    const Plane<ColorSums>& sums = emitter_sums(layer);
     const int left = std::max(x0, layout_.offset_x), right = std::min(x1, layout_.offset_x + layout_.width),
               bottom = std::min(y1, layout_.offset_y + layout_.height);
     if (left >= right || sums.empty()) return;

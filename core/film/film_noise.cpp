@@ -12,11 +12,12 @@ namespace dg {
 
 Film::Estimate Film::estimate(std::size_t i) const {
     const CameraSums& p = of<Layer::sums>()[i];
-    const Plane<XyzSums>& set = of<Layer::catchers>();
+    const Plane<XyzSums>& catchers = of<Layer::catchers>();
     Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()}, all = sum_xyz(i);
-    for (int k = 0; k < 3 && !set.empty(); ++k) {   // variance of light plus change, relative to all visible light
-        const double with = set[2 * i].xyz[k].value();
-        xyz[k] += with - set[2 * i + 1].xyz[k].value();
+    // Variance of light + with - without (camera_light.h), relative to all visible light.
+    for (int k = 0; k < 3 && !catchers.empty(); ++k) {
+        const double with = catchers[2 * i].xyz[k].value();
+        xyz[k] += with - catchers[2 * i + 1].xyz[k].value();
         all[k] += with;
     }
     const double n = p.count;
@@ -26,8 +27,8 @@ Film::Estimate Film::estimate(std::size_t i) const {
         e.sum[k] = dot(to_double(rgb_from_xyz_[k]), all);
         const double scatter = p.rgb_squares[k].value() - own * own / n;
         e.variance[k] = n < 2 ? 0 : std::max(0.0, scatter / (n * (n - 1)));
-        for (const Plane<ColorSums>* lit : {&of<Layer::splats>(), &of<Layer::flare>()})
-            if (!lit->empty() && n > 0) e.variance[k] += (*lit)[i].rgb_squares[k].value() / (n * n);
+        for (const Plane<ColorSums>* emitter_layer : {&of<Layer::splats>(), &of<Layer::flare>()})
+            if (!emitter_layer->empty() && n > 0) e.variance[k] += (*emitter_layer)[i].rgb_squares[k].value() / (n * n);
     }
     return e;
 }

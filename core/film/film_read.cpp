@@ -17,8 +17,8 @@ Vec3d Film::sum_xyz(std::size_t i) const {
     Vec3d sum;
     for (int k = 0; k < 3; ++k) {
         ValueSum all = of<Layer::sums>()[i].xyz[k];
-        for (const Plane<ColorSums>* lit : {&of<Layer::splats>(), &of<Layer::flare>()})
-            if (!lit->empty()) all.add((*lit)[i].xyz[k]);
+        for (const Plane<ColorSums>* emitter_layer : {&of<Layer::splats>(), &of<Layer::flare>()})
+            if (!emitter_layer->empty()) all.add((*emitter_layer)[i].xyz[k]);
         sum[k] = all.value();
     }
     return sum;
@@ -59,13 +59,13 @@ std::vector<float> Film::means(const std::string& layer, std::size_t first, std:
 std::vector<float> Film::mean_channels() const {
     const Plane<ValueSum>& own = require<Layer::channels>();
     const Plane<ValueSum>& splats = of<Layer::channel_splats>();
-    const std::size_t each = own.size() / layout_.pixels();
+    const std::size_t channels = own.size() / layout_.pixels();
     std::vector<float> mean;
     mean.reserve(own.size());
     for (std::size_t i = 0; i < own.size(); ++i) {
         ValueSum sum = own[i];
         if (!splats.empty()) sum.add(splats[i]);
-        const std::uint32_t n = of<Layer::sums>()[i / each].count;
+        const std::uint32_t n = of<Layer::sums>()[i / channels].count;
         mean.push_back(n ? float(sum.value() / n) : 0.f);
     }
     return mean;
@@ -119,14 +119,14 @@ Ranked Film::ranked(std::span<const std::uint32_t> ids, int ranks) const {
             return size(a) != size(b) ? size(a) > size(b) : a.object < b.object;
         });
         const std::size_t kept = std::min(groups.size(), std::size_t(ranks));
-        double left = 0;
+        double rest = 0;
         for (std::size_t k = 0; k < groups.size(); ++k) {
             const double share = double(groups[k].steps) / double(cover[i].white);
             if (k < kept) found.ids[ranks * i + k] = groups[k].object, found.shares[ranks * i + k] = float(share);
-            else left += share;
+            else rest += share;
         }
         found.cut_pixels += kept < groups.size();
-        found.most_cut = std::max(found.most_cut, float(std::abs(left)));
+        found.most_cut = std::max(found.most_cut, float(std::abs(rest)));
     }
     return found;
 }

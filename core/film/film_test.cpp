@@ -124,8 +124,8 @@ TEST_CASE("shared adding: from several threads, in any order, the bits of adding
     shuffle(draws, 5);
     const auto add_third = [&](std::size_t first) {
         for (std::size_t i = first; i < draws.size(); i += 3)
-            shared.add_shared(draws[i].x, draws[i].y, draws[i].sample, w, light_of(draws[i]));
-        shared.add_shared(0, 0, 0, w, {.light = 1.f});  // outside the region: ignored
+            shared.add_locked(draws[i].x, draws[i].y, draws[i].sample, w, light_of(draws[i]));
+        shared.add_locked(0, 0, 0, w, {.light = 1.f});  // outside the region: ignored
     };
     std::vector<std::thread> threads;
     for (std::size_t k = 0; k < 3; ++k) threads.emplace_back(add_third, k);
@@ -134,7 +134,7 @@ TEST_CASE("shared adding: from several threads, in any order, the bits of adding
     CHECK(direct.bad_samples().size() == shared.bad_samples().size());
 }
 
-TEST_CASE("the state comes back bit by bit") {
+TEST_CASE("the state comes back bit for bit") {
     Film film(kLayout), copy(kLayout);
     for (const Draw& d : all_draws()) draw(film, d);
     for (const std::string& part : film.state_parts())
@@ -412,7 +412,7 @@ TEST_CASE("a bad sample adds no coverage") {
         Film film(layout), alone(layout);
         for (Film* f : {&film, &alone}) f->add(0, 0, 0, w, good);
         film.add(0, 0, 1, w, {.light = worst, .white = 1, .covered = 0.5f, .objects = {{{4, 0.5f}}}, .object_count = 1});
-        if (catchers) film.add_shared(0, 0, 2, w, {.light = 1.f, .with = worst, .white = 1, .covered = 0.25f});
+        if (catchers) film.add_locked(0, 0, 2, w, {.light = 1.f, .with = worst, .white = 1, .covered = 0.25f});
         CHECK(film.bad_sample_count() == (catchers ? 2 : 1));
         CHECK(film.coverage() == std::vector{1.f});
         for (const char* layer : {"coverage", "objects"})
@@ -427,7 +427,7 @@ TEST_CASE("a film in the memory of another one is empty") {
         film.add(1, 1, 0, {1, 2, 3});
         film.count(1, 1);
         splat(film, 2, 2, 1, {3, 2, 1});
-        film.add_shared(2, 1, 5, Wavelengths::sample(0.5f), {.light = std::numeric_limits<float>::quiet_NaN()});
+        film.add_locked(2, 1, 5, Wavelengths::sample(0.5f), {.light = std::numeric_limits<float>::quiet_NaN()});
     };
     const auto memory = [](const Film& film) { return film.state("sums").bytes.data(); };
     const Film fresh(all);
@@ -530,7 +530,7 @@ TEST_CASE("a state out of a damaged file, locks and all, can be drawn into and a
         film.set_state(part, ones);
         other.set_state(part, ones);
     }
-    film.add_shared(1, 0, 0, Wavelengths::sample(0.5f), {.light = 1.f});  // would wait for ever
+    film.add_locked(1, 0, 0, Wavelengths::sample(0.5f), {.light = 1.f});  // would wait for ever
     film.merge(other);
     CHECK(film.sample_counts()[0] == 0xfffffffeu);
     CHECK(std::isfinite(film.mean_xyz()[0]));
@@ -547,7 +547,7 @@ TEST_CASE("bands hold the mean radiance of their wavelengths, whoever brings it"
         to.add(0, 0, i, w, {.light = 3.f});
         to.splat(0, 0, i, w, 1.f);
         to.splat(0, 0, i, w, 2.f, Layer::flare);
-        to.add_shared(1, 0, i, w, {.light = w.d65});
+        to.add_locked(1, 0, i, w, {.light = w.d65});
         for (int x = 0; x < 2; ++x) to.count(x, 0);
     }
     film.add(0, 0, kSamples, Wavelengths::sample(0.5f), {.light = std::numeric_limits<float>::quiet_NaN()});
@@ -605,7 +605,7 @@ TEST_CASE("channels hold light times response, whoever brings it") {
         to.add(0, 0, i, w, {.light = 3.f});
         to.splat(0, 0, i, w, 1.f);
         to.splat(0, 0, i, w, 2.f, Layer::flare);
-        to.add_shared(1, 0, i, w, {.light = w.d65});
+        to.add_locked(1, 0, i, w, {.light = w.d65});
         for (int x = 0; x < 2; ++x) to.count(x, 0);
     }
     film.add(0, 0, kSamples, Wavelengths::sample(0.5f), {.light = std::numeric_limits<float>::quiet_NaN()});

@@ -58,7 +58,7 @@ Film::~Film() {
     if (keepers == 0 || (kept && kept->state_bytes() >= state_bytes())) return;
     before.reset(std::exchange(kept, new Film(std::move(*this))));
     if (before) ended = std::exchange(before->stores_, {});   // so that it is not kept in turn
-    kept->stores_.for_each([](const auto&, auto& store) { store.rest(); });
+    kept->stores_.for_each([](const auto&, auto& store) { store.release_spare(); });
 }
 
 void Film::clear() {

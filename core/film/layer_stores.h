@@ -24,7 +24,7 @@ class LayerStores {
     static constexpr void for_each_row(const Act& act) {
         std::apply([&](const auto&... row) { (act(row), ...); }, kRows);
     }
-    /// Bytes of a pixel; for Layer::objects, with two objects per pixel.
+    /// Bytes of a pixel (Film::pixel_bytes).
     static constexpr std::size_t pixel_bytes(const LayerCounts& asked) {
         std::size_t bytes = 0;
         for_each_row([&](const auto& row) {

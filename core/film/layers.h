@@ -22,10 +22,10 @@ struct LayerRow {
     const char* name;                             // in files, messages and Python
     const char* about;                            // docstring in Python; null: the layer follows from other layers
     int most;                                     // largest count that a layout may ask for
-    int (*each)(const LayerCounts&) = nullptr;    // records per pixel; null: the count of the layout
+    int (*per_pixel)(const LayerCounts&) = nullptr;   // records per pixel; null: the count of the layout
     Layer needs = Layer::sums;                    // layer that a layout must also ask for
 
-    constexpr int records(const LayerCounts& asked) const { return each ? each(asked) : asked[layer]; }
+    constexpr int records(const LayerCounts& asked) const { return per_pixel ? per_pixel(asked) : asked[layer]; }
 };
 
 inline constexpr std::tuple kLayers{
@@ -33,10 +33,10 @@ inline constexpr std::tuple kLayers{
     LayerRow<Plane<AovSums>>{Layer::aovs, "aovs", "Auxiliary channels, FILM_AOVS.", 1},
     LayerRow<Plane<ColorSums>>{Layer::splats, "splats", "Light paths may add to any pixel.", 1},
     LayerRow<Plane<ColorSums>>{Layer::flare, "flare", "Ghosts may add to any pixel.", 1},
-    LayerRow<Plane<HalfSums>>{Layer::halves, "halves", "The picture of every other sample beside that of all.", 1},
+    LayerRow<Plane<HalfSums>>{Layer::halves, "halves", "Sums of the samples with even indices, for noise.", 1},
     LayerRow<Plane<CoverageSums>>{Layer::coverage, "coverage", "Share of each pixel that objects cover.", 1},
-    // Two records per pixel: light of the set with the objects, and without.
-    LayerRow<Plane<XyzSums>>{Layer::catchers, "catchers", "Light of the set beside that of the objects.", 1,
+    // Two records per pixel: light of catchers and background with the objects, and without.
+    LayerRow<Plane<XyzSums>>{Layer::catchers, "catchers", "Light of catchers, with and without the objects.", 1,
                              [](const LayerCounts& asked) { return 2 * asked[Layer::catchers]; }},
     LayerRow<Plane<ValueSum>>{Layer::bands, "bands", "Bands of equal width over all wavelengths.", 64},
     LayerRow<Plane<ValueSum>>{Layer::channels, "channels", "Channels of a sensor (Film.set_responses).",
@@ -50,7 +50,8 @@ inline constexpr std::tuple kLayers{
                               [](const LayerCounts& asked) {
                                   return 2 * asked[Layer::catchers] * asked[Layer::channels];
                               }},
-    LayerRow<ObjectLists>{Layer::objects, "objects", "Share of each object of it.", 1, nullptr, Layer::coverage},
+    LayerRow<ObjectLists>{Layer::objects, "objects", "Share of each pixel that each object covers.", 1, nullptr,
+                          Layer::coverage},
 };
 
 }  // namespace dg

@@ -56,7 +56,7 @@ class Plane {
         }
     }
     /// Gives back memory that no film of this layout needs before its first sample.
-    void rest() {}
+    void release_spare() {}
     void merge(const Plane& more) {
         for (std::size_t i = 0; i < size(); ++i) records_[i].add(more.records_[i]);
     }
@@ -76,13 +76,13 @@ class Plane {
     /// Merges words of some columns of each pixel; words of other columns are 0.
     void add_state(const char* name, std::span<const std::uint32_t> columns, std::span<const std::byte> bytes,
                    const FilmLayout& layout) {
-        const std::size_t pixels = layout.pixels(), each = size() / pixels, words = each * kWords;
+        const std::size_t pixels = layout.pixels(), per_pixel = size() / pixels, words = per_pixel * kWords;
         const bool rises = std::ranges::adjacent_find(columns, std::ranges::greater_equal()) == columns.end();
         if (!rises || (!columns.empty() && columns.back() >= words) || bytes.size() != 4 * pixels * columns.size())
             throw input_error("film state", std::string("words of ") + name,
                               "at most " + std::to_string(words) + " columns of " + std::to_string(pixels),
                               std::to_string(columns.size()) + " with " + std::to_string(bytes.size()) + " bytes");
-        std::vector<R> pixel(each);
+        std::vector<R> pixel(per_pixel);
         std::vector<std::uint32_t> all(words);
         const std::byte* next = bytes.data();
         for (std::size_t p = 0; p < pixels; ++p) {
@@ -91,7 +91,7 @@ class Plane {
                 next += 4;
             }
             std::memcpy(static_cast<void*>(pixel.data()), all.data(), 4 * words);
-            for (std::size_t k = 0; k < each; ++k) records_[p * each + k].add(pixel[k]);
+            for (std::size_t k = 0; k < per_pixel; ++k) records_[p * per_pixel + k].add(pixel[k]);
         }
     }
 
@@ -103,7 +103,7 @@ class Plane {
 /// Lists of the objects of each pixel. state() makes their words by CoverLists::words().
 class ObjectLists {
   public:
-    static constexpr std::size_t kBytes = CoverLists::kPixelBytes + 2 * CoverLists::kEntryBytes;   // with two objects
+    static constexpr std::size_t kBytes = CoverLists::kPixelBytes + 2 * CoverLists::kEntryBytes;   // for two objects
     static constexpr std::size_t kWords = CoverLists::kEntryWords;
 
     bool empty() const { return !lists_; }
@@ -118,7 +118,7 @@ class ObjectLists {
     void clear() {
         if (pixels_) lists_ = std::make_unique<CoverLists>(pixels_);
     }
-    void rest() { clear(); }
+    void release_spare() { clear(); }
     void merge(const ObjectLists& more) {
         if (lists_) lists_->add(*more.lists_);
     }

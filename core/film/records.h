@@ -63,7 +63,7 @@ struct ColorSums {
 /// Camera samples of a pixel.
 struct CameraSums : ColorSums {
     std::uint32_t count = 0, bad = 0, first_bad = kNoSample;
-    std::uint32_t lock = 0;   // spin lock of add_shared(); 0: open
+    std::uint32_t lock = 0;   // spin lock of add_locked(); 0: open
     void mark_bad(std::uint32_t sample) {
         ++bad;
         first_bad = std::min(first_bad, sample);

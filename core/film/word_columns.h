@@ -7,10 +7,10 @@
 
 namespace dg {
 
-/// Indices of the words of a pixel, out of `each`, that are not 0 in every pixel; rising, at least one.
-std::vector<std::uint32_t> used_columns(std::span<const std::uint32_t> words, std::size_t each);
+/// Indices of the words of a pixel that at least one pixel uses (not 0), in rising order.
+std::vector<std::uint32_t> used_columns(std::span<const std::uint32_t> words, std::size_t words_per_pixel);
 /// Copies the words of these columns, pixel by pixel, into `to`.
-void take_columns(std::span<const std::uint32_t> words, std::size_t each, std::span<const std::uint32_t> columns,
-                  std::span<std::uint32_t> to);
+void take_columns(std::span<const std::uint32_t> words, std::size_t words_per_pixel,
+                  std::span<const std::uint32_t> columns, std::span<std::uint32_t> to);
 
 }  // namespace dg

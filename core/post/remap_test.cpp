@@ -270,7 +270,7 @@ TEST_CASE("where a map is not defined pixels are 0 and counted") {
     CHECK(out.values[20 * 3] == 0);
 }
 
-TEST_CASE("names of objects are carried over bit by bit") {
+TEST_CASE("names of objects are carried over bit for bit") {
     std::vector<std::uint32_t> ids;
     for (std::uint32_t i = 0; i < 40 * 40; ++i) ids.push_back(i * 2654435761u);
     const TestMap map(40, 40, [](double, double) { return Shift{1.4, -2.6}; });

@@ -179,7 +179,7 @@ class CameraPass {
         const Landings landings = land(density_, settings_.sensor, hero, others, sampler.next_1d());
         for (const Landing& l : landings) {   // the hero's pixel is first
             const auto to_film = [&](const Radiance& r) { return r.hero * own + r.shared * l.weight; };
-            film_.add_shared(l.pixel.x, l.pixel.y, sample.index, sample.wavelengths,
+            film_.add_locked(l.pixel.x, l.pixel.y, sample.index, sample.wavelengths,
                              arrived(sample, sight, l.weight, to_film));
             own = 0.f;
         }

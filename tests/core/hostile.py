@@ -710,7 +710,7 @@ def _of_films() -> dict[str, Call]:
 
     def read(made: Any) -> Any:
         out = [made.mean_rgb(), made.variance_rgb(), made.sample_counts(), made.bad_samples]
-        out += [made.coverage(), made.ranked(np.arange(3, dtype=U32), 2), made.set_rgb(True)]
+        out += [made.coverage(), made.ranked(np.arange(3, dtype=U32), 2), made.catcher_rgb(True)]
         out += [made.state(part).sum() for part in made.state_parts()]
         return [
             *out,
@@ -733,7 +733,7 @@ def _of_films() -> dict[str, Call]:
     def answering(curves: Any) -> Any:
         made = film(plain)
         made.set_responses(curves)
-        return made.mean_channels(), made.set_channels(True)
+        return made.mean_channels(), made.catcher_channels(True)
 
     parts, drawn = film().state_parts(), film()
     _core.render(*shot()[:2], drawn, shot()[2], 0, 2)

@@ -116,10 +116,10 @@ def _catchers(film: _core.Film, alpha: NDArray[np.float32]) -> dict[str, NDArray
     parts = film.state_parts()
     made: dict[str, NDArray[np.float32]] = {}
     if "catchers" in parts:
-        pair = film.set_rgb(True), film.set_rgb(False)
+        pair = film.catcher_rgb(True), film.catcher_rgb(False)
         made["catcher"], made["catcher_ratio"] = layers(*pair, alpha)
     if "catcher_channels" in parts:
-        pair = film.set_channels(True), film.set_channels(False)
+        pair = film.catcher_channels(True), film.catcher_channels(False)
         made["catcher_channels"], made["catcher_ratio_channels"] = layers(*pair, alpha)
     return made
 
