@@ -47,8 +47,8 @@ class EmbreeIntersector final : public Intersector {
     }
     void set_filters(RTCGeometry geometry, const InstanceGeometry& instance);
     void attach(RTCScene scene, GeometryOwner geometry, unsigned id);
-    void attach_to_top(GeometryOwner geometry, unsigned id, bool of_set);
-    RTCScene top_of(const Ray& ray) const { return ray.of_set && set_ ? set_.get() : top_.get(); }
+    void attach_to_top(GeometryOwner geometry, unsigned id, bool is_catcher);
+    RTCScene top_of(const Ray& ray) const { return ray.without_objects && catchers_ ? catchers_.get() : top_.get(); }
     void attach_instance(unsigned id, const InstanceGeometry& instance, const Mesh& mesh);
     RTCScene mesh_scene(const InstanceGeometry& instance, const Mesh& mesh);
     void attach_curves(RTCScene scene, const InstanceGeometry& instance, const Mesh& mesh);
@@ -76,7 +76,7 @@ class EmbreeIntersector final : public Intersector {
     std::vector<const TracedCurves*> traced_;       // by instance; null: triangles
     std::map<std::uint32_t, Hull> hulls_;  // of moving meshes; during build only
     SceneOwner top_;
-    SceneOwner set_;   // catchers only; null: there are none
+    SceneOwner catchers_;   // for Ray::without_objects; null: there are no catchers
     unsigned sphere_geometry_;
     std::string name_;
 };
@@ -96,7 +96,7 @@ EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
       top_(new_scene(count_flattened(meshes, instances, flattened_))),
       sphere_geometry_(static_cast<unsigned>(instances.size())),
       name_(device_.version()) {
-    if (std::ranges::any_of(instances, &InstanceGeometry::catcher)) set_ = new_scene(0);
+    if (std::ranges::any_of(instances, &InstanceGeometry::catcher)) catchers_ = new_scene(0);
     for (const InstanceGeometry& i : instances)
         if (const Mesh& mesh = meshes[i.mesh]; !mesh.curves.empty()) curves_.try_emplace(i.mesh, mesh);
     for (unsigned i = 0; i < instances.size(); ++i) {
@@ -110,7 +110,7 @@ EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
         attach_to_top(geometry_of_spheres(device_, spheres_), sphere_geometry_, true);
     hulls_.clear();
     rtcCommitScene(top_.get());
-    if (set_) rtcCommitScene(set_.get());
+    if (catchers_) rtcCommitScene(catchers_.get());
     device_.check("building the acceleration structure of the scene");
 }
 
@@ -138,8 +138,8 @@ void EmbreeIntersector::attach(RTCScene scene, GeometryOwner geometry, unsigned 
                           id);  // the scene keeps a reference
 }
 
-void EmbreeIntersector::attach_to_top(GeometryOwner geometry, unsigned id, bool of_set) {
-    if (set_ && of_set) rtcAttachGeometryByID(set_.get(), geometry.get(), id);
+void EmbreeIntersector::attach_to_top(GeometryOwner geometry, unsigned id, bool is_catcher) {
+    if (catchers_ && is_catcher) rtcAttachGeometryByID(catchers_.get(), geometry.get(), id);
     attach(top_.get(), std::move(geometry), id);
 }
 

@@ -27,7 +27,7 @@ struct InstanceGeometry {
     // Over the scene's interval (0 .. 1); both pointers must outlive the intersector.
     const Motion* motion = nullptr;  // replaces world_from_local; null: static
     const Shown* shown = nullptr;    // null: always visible
-    bool catcher = false;            // also hit by rays of the catcher set (Ray::of_set)
+    bool catcher = false;            // also hit by rays with Ray::without_objects
     bool still() const { return !motion && !shown; }
 };
 

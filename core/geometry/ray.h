@@ -15,7 +15,7 @@ struct Ray {
     float t_min = 0;  // m
     float t_max = std::numeric_limits<float>::infinity();
     RayCone cone = {};  // empty: textures are point-sampled
-    bool of_set = false;  // hits only catchers: the set without the objects
+    bool without_objects = false;  // hits only catchers (scene/catcher.h)
 };
 
 /// Whether a ray tracer accepts the ray: no NaN or infinity, and no overflow in its arithmetic.

@@ -101,7 +101,7 @@ struct LightSample {
 };
 
 struct TriangleSampler;
-struct LightWay;
+struct LightSegment;
 struct EmitterSample;
 
 /// Choice among lights with a position: by the tree; by power alone or uniformly, to measure the benefit of the tree.
@@ -137,7 +137,7 @@ class LightSet {
         std::int32_t light;
         float probability;
     };
-    std::optional<Choice> choose(float u, const LightWay& way) const;
+    std::optional<Choice> choose(float u, const LightSegment& segment) const;
     /// Probability with which sample() chooses a light.
     float choice_probability(std::int32_t light, Vec3f position) const;
     /// Samples a given light like sample(); its pdf excludes the choice.

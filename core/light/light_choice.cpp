@@ -1,7 +1,7 @@
 // light_choice.cpp -- chooses a light without sampling it, for sampling from another point.
 #include "light/emitter.h"
 #include "light/light.h"
-#include "light/light_way.h"
+#include "light/light_segment.h"
 #include "light/triangle_sampler.h"
 #include "math/below_one.h"
 
@@ -12,19 +12,19 @@ constexpr float kLeastExtinction = 1e-6f;   // 1/m
 
 }  // namespace
 
-std::optional<LightSet::Choice> LightSet::choose(float u, const LightWay& way) const {
+std::optional<LightSet::Choice> LightSet::choose(float u, const LightSegment& segment) const {
     if (empty()) return std::nullopt;
     LightTree::Weights weights;
     weights.sum = 0;
-    if (!tree_.empty()) weights = tree_.weigh(way);
+    if (!tree_.empty()) weights = tree_.weigh(segment);
     // Light from infinity reaches the whole segment; its scattering is estimated by the mean of the phase function.
-    const float lit = std::min(way.length, 1 / std::max(way.extinction, kLeastExtinction));
+    const float lit = std::min(segment.length, 1 / std::max(segment.extinction, kLeastExtinction));
     const float p_infinite = infinite_share(weights.sum * kPi / lit);
     if (u < p_infinite) {
         const DiscreteSample found = infinite_.sample(std::min(u / p_infinite, kBelowOne));
         return Choice{infinite_lights_[found.index], p_infinite * found.pmf};
     }
-    const auto found = tree_.sample(weights, way, std::min((u - p_infinite) / (1 - p_infinite), kBelowOne));
+    const auto found = tree_.sample(weights, segment, std::min((u - p_infinite) / (1 - p_infinite), kBelowOne));
     if (!found) return std::nullopt;
     return Choice{std::int32_t(triangles_[found->light].light), (1 - p_infinite) * found->probability};
 }

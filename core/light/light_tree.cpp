@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "light/light_tree_build.h"
-#include "light/light_way.h"
+#include "light/light_segment.h"
 #include "math/below_one.h"
 
 namespace dg {
@@ -105,7 +105,7 @@ LightTree::Weights LightTree::weigh(const Where& where) const {
 }
 
 template LightTree::Weights LightTree::weigh(const Vec3f&) const;
-template LightTree::Weights LightTree::weigh(const LightWay&) const;
+template LightTree::Weights LightTree::weigh(const LightSegment&) const;
 
 /// At least one of `weights` is positive.
 LightTree::Descent LightTree::start(const Weights& top, float u) const {
@@ -140,7 +140,7 @@ std::optional<LightTree::Choice> LightTree::sample(const Weights& top, const Whe
 }
 
 template std::optional<LightTree::Choice> LightTree::sample(const Weights&, const Vec3f&, float) const;
-template std::optional<LightTree::Choice> LightTree::sample(const Weights&, const LightWay&, float) const;
+template std::optional<LightTree::Choice> LightTree::sample(const Weights&, const LightSegment&, float) const;
 
 void LightTree::sample(const Weights& top, Vec3f position, std::span<const float> u,
                        std::span<Choice> found) const {

@@ -46,8 +46,8 @@ class LightTree {
     /// A tree of a single light, which is chosen without evaluating its estimate.
     bool lone() const { return place_.size() == 1; }
     /// Estimated illuminance (lux) by the children of the first two nodes; their sum estimates the total. A single
-    /// group would be inaccurate for points surrounded by lights. `where`: a point, or a segment in a medium (LightWay,
-    /// light_way.h) for single scattering.
+    /// group would be inaccurate for points surrounded by lights. `where`: a point, or a segment in a medium
+    /// (light_segment.h) for single scattering.
     struct Weights {
         std::array<float, 2 * LightNode::kWide> of;
         float sum;

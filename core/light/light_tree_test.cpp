@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "light/direction_test.h"
-#include "light/light_way.h"
+#include "light/light_segment.h"
 
 using namespace dg;
 
@@ -117,7 +117,7 @@ TEST_CASE("lamps are chosen for a way by the light that it scatters once, facets
     const auto phase = [](float turn) { return std::pow((1 - kG) * (1 - kG) + 2 * kG * turn, -1.5f); };
     const PhaseAngles angles(phase);
     const Vec3f origin{1, 2, 3}, d = normalize(Vec3f{1, -1, 0.5f});
-    const LightWay way{origin, d, kLength, 0, angles};
+    const LightSegment way{origin, d, kLength, 0, angles};
     for (int layout = 0; layout < 12; ++layout) {
         std::vector<LightBounds> lights(kLamps);
         std::vector<double> brought(kLamps, 0);
@@ -158,7 +158,7 @@ TEST_CASE("facets that light any part of a way are chosen for it, and none that 
     const LightTree tree(lights);
     const PhaseAngles even;
     for (const float length : {2.f, 15.f, std::numeric_limits<float>::infinity()}) {
-        const LightWay way{{-6, 1, 2}, normalize(Vec3f{1, -0.3f, -0.2f}), length, 0.1f, even};
+        const LightSegment way{{-6, 1, 2}, normalize(Vec3f{1, -0.3f, -0.2f}), length, 0.1f, even};
         const LightTree::Weights weights = tree.weigh(way);
         std::vector<double> counted(kFacets, 0);
         for (int i = 0; i < kDraws; ++i)

@@ -73,7 +73,7 @@ void CoatedBsdf::catch_below() {
     const float passed = mean_passed(alpha, base_.facets.distribution);   // G
     const Spectrum r = base_.reflectance.at(2 / 3.f), k = to_and_fro();
     const float k0 = 1 - passed_mean_ / (coat_.ior * coat_.ior);
-    even_ = r * r * (passed * (1 - k0)) * k /
+    interreflection_ = r * r * (passed * (1 - k0)) * k /
             ((Spectrum(1.f) - r * passed * k) * ((k0 - lost_inside_) * caught_->mean()));
 }
 
@@ -133,16 +133,16 @@ Evaluation CoatedBsdf::metal_lobe(const Facing& side, Vec3f wo, Vec3f wi, const 
 }
 
 /// Probability of sampling the diffuse lobe, for light that enters the coat over a metal.
-float CoatedBsdf::even_probability(const Bent& o) const {
+float CoatedBsdf::interreflection_probability(const Bent& o) const {
     if (!caught_) return 0;
-    const float even = o.caught * even_.average() * caught_->mean();
+    const float interreflected = o.caught * interreflection_.average() * caught_->mean();
     const float mirrored = base_.reflectance.at(o.inside).average() * (o.passed.average() - o.caught);
-    return even > 0 ? even / (even + std::max(0.f, mirrored)) : 0;
+    return interreflected > 0 ? interreflected / (interreflected + std::max(0.f, mirrored)) : 0;
 }
 
-Evaluation CoatedBsdf::even_lobe(const Bent& o, const Bent& i) const {
+Evaluation CoatedBsdf::interreflection_lobe(const Bent& o, const Bent& i) const {
     const Spectrum way = absorbs_ ? exp(coat_.depth * (-1 / o.inside - 1 / i.inside)) : Spectrum(1.f);
-    return {even_ * way * (o.caught * i.caught * i.outside / kPi), i.outside / kPi};
+    return {interreflection_ * way * (o.caught * i.caught * i.outside / kPi), i.outside / kPi};
 }
 
 Evaluation CoatedBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
@@ -154,9 +154,9 @@ Evaluation CoatedBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
     Evaluation e = coat_lobe(side, wo, wi, cos_i);
     Evaluation below = base_.metal ? metal_lobe(side, wo, wi, o, i) : diffuse_lobe(o, i);
     if (caught_) {
-        const Evaluation even = even_lobe(o, i);
-        const float q = even_probability(o);
-        below = {below.f_cos + even.f_cos, (1 - q) * below.pdf + q * even.pdf};
+        const Evaluation interreflected = interreflection_lobe(o, i);
+        const float q = interreflection_probability(o);
+        below = {below.f_cos + interreflected.f_cos, (1 - q) * below.pdf + q * interreflected.pdf};
     }
     e.f_cos += below.f_cos;
     e.pdf = p * e.pdf + (1 - p) * below.pdf;
@@ -193,8 +193,8 @@ std::optional<BsdfSample> CoatedBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) co
         s.wi = reflect(wo, coat_.facets.sample_visible(side.ns, wo, u));
     } else {
         if (mirror_below) return mirrored(side, wo, below_mirrored(o), 1 - p);
-        const bool even = !base_.metal || (u_lobe - p) < even_probability(o) * (1 - p);
-        const auto wi = even ? std::optional(sample_cosine(side.ns, u)) : sample_metal(side, wo, o, u);
+        const bool diffuse = !base_.metal || (u_lobe - p) < interreflection_probability(o) * (1 - p);
+        const auto wi = diffuse ? std::optional(sample_cosine(side.ns, u)) : sample_metal(side, wo, o, u);
         if (!wi) return std::nullopt;
         s.wi = *wi;
     }

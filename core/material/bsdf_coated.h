@@ -79,8 +79,9 @@ class CoatedBsdf {
     Evaluation coat_lobe(const Facing& side, Vec3f wo, Vec3f wi, float cos_i) const;
     Evaluation diffuse_lobe(const Bent& o, const Bent& i) const;
     Evaluation metal_lobe(const Facing& side, Vec3f wo, Vec3f wi, const Bent& o, const Bent& i) const;
-    float even_probability(const Bent& o) const;
-    Evaluation even_lobe(const Bent& o, const Bent& i) const;
+    float interreflection_probability(const Bent& o) const;
+    /// The diffuse lobe of light that the coat reflects back to the metal.
+    Evaluation interreflection_lobe(const Bent& o, const Bent& i) const;
     void catch_below();
     std::optional<BsdfSample> mirrored(const Facing& side, Vec3f wo, Spectrum share, float probability) const;
     std::optional<Vec3f> sample_metal(const Facing& side, Vec3f wo, const Bent& o, Vec2f u) const;
@@ -89,7 +90,7 @@ class CoatedBsdf {
     CoatedBase base_;
     std::optional<GlassAlbedo> rough_;      // only for a rough coat
     std::optional<CaughtBelow> caught_;     // only for a metal
-    Spectrum even_{0.f};                    // C / A
+    Spectrum interreflection_{0.f};         // C / A
     Spectrum diffuse_;                      // p / (n^2 (1 - p K)), without 1 / pi
     float passed_mean_ = 1;                 // T_mean: 1 - M
     float lost_inside_ = 0;                 // m'

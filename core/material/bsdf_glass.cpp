@@ -51,7 +51,7 @@ Facet GlassBsdf::joined(const Facing& side, Vec3f wo, Vec3f wi, float cos_i, boo
     return facets.reflecting(side.ns, wo, mirrored, side.cos_o, -cos_i);
 }
 
-GlassBsdf::Even GlassBsdf::even(const Facing& side, Vec3f wo) const {
+GlassBsdf::DiffuseCompensation GlassBsdf::diffuse_compensation(const Facing& side, Vec3f wo) const {
     if (!compensation || !compensation->used()) return {};
     const GlassCompensation& c = *compensation;
     const GlassLobes here = c.albedo.toward(wo, side.cos_o), &mean = c.albedo.mean();
@@ -61,7 +61,8 @@ GlassBsdf::Even GlassBsdf::even(const Facing& side, Vec3f wo) const {
     return {here.missing_dense, c.transmitted_dense, mean.missing_dense, mean.missing_thin, false};
 }
 
-void GlassBsdf::add_even(const Even& e, const Facing& side, Vec3f wi, bool reflected, Evaluation& sum) const {
+void GlassBsdf::add_compensation(const DiffuseCompensation& e, const Facing& side, Vec3f wi, bool reflected,
+                                 Evaluation& sum) const {
     sum.pdf *= 1 - e.share;
     if (e.share == 0) return;
     const float cosine = std::abs(dot(side.ns, wi));
@@ -88,7 +89,7 @@ Evaluation GlassBsdf::evaluate_with_pdf(Vec3f wo, Vec3f wi) const {
     const Split p = split(f.cos_h, eta(side.front), side.front);
     Evaluation e = reflected ? Evaluation{p.reflected * f.f_cos, p.probability * f.pdf}
                              : Evaluation{p.transmitted * f.f_cos, (1 - p.probability) * f.pdf, disperses};
-    if (compensation) add_even(even(side, wo), side, wi, reflected, e);
+    if (compensation) add_compensation(diffuse_compensation(side, wo), side, wi, reflected, e);
     return e;
 }
 
@@ -97,7 +98,7 @@ std::optional<BsdfSample> GlassBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) con
     if (side.cos_o <= 0) return std::nullopt;
     const bool smooth = is_specular();
     const float n = eta(side.front);
-    const Even e = smooth ? Even{} : even(side, wo);
+    const DiffuseCompensation e = smooth ? DiffuseCompensation{} : diffuse_compensation(side, wo);
     BsdfSample s;
     s.specular = smooth;
     float probability = 1;

@@ -65,12 +65,13 @@ struct GlassBsdf {
     Facet joined(const Facing& side, Vec3f wo, Vec3f wi, float cos_i, bool reflected) const;
 
     /// The diffuse lobe of multiple scattering from wo: its share of light, and its transmitted fraction.
-    struct Even {
+    struct DiffuseCompensation {
         float share = 0, transmitted = 0, mean_here = 1, mean_beyond = 1;
         bool thin_side = true;
     };
-    Even even(const Facing& side, Vec3f wo) const;
-    void add_even(const Even& e, const Facing& side, Vec3f wi, bool reflected, Evaluation& sum) const;
+    DiffuseCompensation diffuse_compensation(const Facing& side, Vec3f wo) const;
+    void add_compensation(const DiffuseCompensation& e, const Facing& side, Vec3f wi, bool reflected,
+                          Evaluation& sum) const;
 };
 
 }  // namespace dg

@@ -25,15 +25,15 @@ void Segment::find_collisions() {
 /// Chooses a wavelength by its share, and rescales u to be uniform again. Grey media need no choice.
 int Segment::choose(Spectrum shares, float& u) const {
     if (rate_.min() == rate_.max()) return 0;
-    float left = u * (shares[0] + shares[1] + shares[2] + shares[3]);
+    float rest = u * (shares[0] + shares[1] + shares[2] + shares[3]);
     int chosen = 0;
     for (int k = 0; k < kWavelengths; ++k) {
         if (!(shares[k] > 0)) continue;
         chosen = k;
-        if (left < shares[k]) break;
-        left -= shares[k];
+        if (rest < shares[k]) break;
+        rest -= shares[k];
     }
-    if (shares[chosen] > 0) u = std::clamp(left / shares[chosen], 0.f, kBelowOne);
+    if (shares[chosen] > 0) u = std::clamp(rest / shares[chosen], 0.f, kBelowOne);
     return chosen;
 }
 
@@ -55,8 +55,8 @@ Spectrum Segment::emitted() const {
     Spectrum sum{0.f};
     for (int k = 0; k < kWavelengths; ++k) {
         const float rate = medium_.extinction[k];
-        const float way = rate > 0 ? -std::expm1(-rate * length_) / rate : length_;
-        if (medium_.emission[k] > 0) sum.set(k, medium_.emission[k] * way);
+        const float effective_length = rate > 0 ? -std::expm1(-rate * length_) / rate : length_;
+        if (medium_.emission[k] > 0) sum.set(k, medium_.emission[k] * effective_length);
     }
     return sum;
 }

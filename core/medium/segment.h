@@ -38,7 +38,7 @@ class Segment {
     float collision_density(float t) const { return (colliding_ * densities(t)).average(); }
 
     /// Transmittance to a distance.
-    Spectrum left(float t) const { return transmittance(medium_.extinction, t); }
+    Spectrum transmittance_to(float t) const { return transmittance(medium_.extinction, t); }
     /// Radiance emitted along the whole segment.
     Spectrum emitted() const;
 
@@ -50,10 +50,10 @@ class Segment {
     };
     Onward passed(float drawn = 1) const {
         const Spectrum density = drawn < 1 ? Spectrum(1.f) - met_ * drawn : transmittance(rate_, length_);
-        return onward(left(length_), density);
+        return onward(transmittance_to(length_), density);
     }
     Onward scattered(float t, float drawn = 1) const {
-        Onward to = onward(medium_.scattering * left(t), densities(t));
+        Onward to = onward(medium_.scattering * transmittance_to(t), densities(t));
         to.weight *= 1 / drawn;
         return to;
     }

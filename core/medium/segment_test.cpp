@@ -119,9 +119,9 @@ TEST_CASE("emission is (1 - exp(-s d)) j / s") {
 TEST_CASE("an endless way lets nothing pass but what meets nothing") {
     const Segment grey(kGrey, kEndless, 1.f, false);
     CHECK(free_path(grey, 0.999999f) < 1000);
-    CHECK(grey.left(kEndless).is_black());
+    CHECK(grey.transmittance_to(kEndless).is_black());
     const Segment colorful(kColorful, kEndless, 1.f, false);
-    CHECK(colorful.left(kEndless)[3] == 1);
+    CHECK(colorful.transmittance_to(kEndless)[3] == 1);
     CHECK(colorful.passed().weight[3] == doctest::Approx(4));
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("a path that is scattered at a share of its collisions brings the same
                 for (int i = 0; i < kCount; ++i)
                     scattered += way.scattered(way.free_collision((float(i) + 0.5f) / kCount), drawn).weight / kCount;
                 for (int k = 0; k < kWavelengths; ++k) {
-                    CHECK(passed[k] == doctest::Approx(way.left(1.5f)[k]).epsilon(1e-3));
+                    CHECK(passed[k] == doctest::Approx(way.transmittance_to(1.5f)[k]).epsilon(1e-3));
                     const float met = m.extinction[k] > 0 ? -std::expm1(-1.5f * m.extinction[k]) / m.extinction[k] : 0;
                     CHECK(scattered[k] * scatters == doctest::Approx(m.scattering[k] * met).epsilon(5e-3));
                 }

@@ -12,9 +12,9 @@ double distance_to_next(RayRandom& random, double rate) {
 
 /// Chooses a wavelength in proportion to its lane.
 int choose(Spectrum lanes, double u) {
-    double left = u * kWavelengths;
+    double rest = u * kWavelengths;
     int k = 0;
-    while (k + 1 < kWavelengths && left >= lanes[k]) left -= lanes[k++];
+    while (k + 1 < kWavelengths && rest >= lanes[k]) rest -= lanes[k++];
     return k;
 }
 
@@ -50,21 +50,21 @@ class Lanes {
 }  // namespace
 
 Spectrum ratio_tracking(const GridRay& ray, Spectrum extinction, double begin, double end, RayRandom random) {
-    Spectrum left{1.f};
+    Spectrum product{1.f};
     const float strongest = extinction.max();
     BlockTraversal walk(ray.grid, ray.origin, ray.direction, begin, end);
     while (const auto step = walk.next()) {
         const float least = step->bounds.least, range = step->bounds.most - least;
-        left *= transmittance(extinction, least * float(step->end - step->begin));
+        product *= transmittance(extinction, least * float(step->end - step->begin));
         const double rate = double(range) * strongest;
         for (double t = step->begin + distance_to_next(random, rate); t < step->end;
              t += distance_to_next(random, rate)) {
             const float above = std::clamp((ray.density(t) - least) / range, 0.f, 1.f);
-            left *= Spectrum(1.f) - extinction * (above / strongest);
+            product *= Spectrum(1.f) - extinction * (above / strongest);
         }
-        if (left.is_black()) return 0.f;
+        if (product.is_black()) return 0.f;
     }
-    return left;
+    return product;
 }
 
 Tracked delta_tracking(const GridRay& ray, const MediumAt& medium, Spectrum lanes, bool hero_only, double begin,
@@ -85,9 +85,9 @@ Tracked delta_tracking(const GridRay& ray, const MediumAt& medium, Spectrum lane
             Lanes shining = path;
             shining.carry(medium.emission * dense);
             found.emitted += shining.weight();
-            found.scattered = random.next() < dense;
-            path.carry(found.scattered ? medium.scattering : medium.extinction);
-            if (!found.scattered) continue;
+            found.collided = random.next() < dense;
+            path.carry(found.collided ? medium.scattering : medium.extinction);
+            if (!found.collided) continue;
             found.t = t, found.weight = path.weight(), found.lanes = path.lanes();
             return found;
         }

@@ -23,7 +23,7 @@ Spectrum ratio_tracking(const GridRay& ray, Spectrum extinction, double begin, d
 /// Result of delta tracking up to a collision or to the end. The wavelength that draws distances is chosen by `lanes`
 /// (segment.h).
 struct Tracked {
-    bool scattered = false;
+    bool collided = false;
     double t = 0;               // distance of the collision, m
     Spectrum weight, lanes;     // throughput factor, and the lanes after it
     Spectrum emitted{0.f};      // emission along the segment, attenuated to its start

@@ -111,7 +111,7 @@ TEST_CASE("delta tracking passes, scatters and shines with the right means at ea
         for (int i = 0; i < kCount; ++i) {
             const Tracked t = delta_tracking(ray, m, lanes, hero_only, 0, kEnd, numbers(i));
             for (int k = 0; k < 4; ++k) {
-                (t.scattered ? scattered : passed)[k] += double(t.weight[k]) / kCount;
+                (t.collided ? scattered : passed)[k] += double(t.weight[k]) / kCount;
                 emitted[k] += double(t.emitted[k]) / kCount;
             }
         }

@@ -60,7 +60,7 @@ std::optional<LightArrival> StraightLightPass::begin(std::uint64_t index) const 
     const Ray world = to_world(camera, path.lens.ray);
     path.lens.ray.t_min = world.t_min;
     const float cosine = sky ? 1 : std::abs(dot(point->normal, world.direction));
-    path.density = weight_.of_light(point->pdf, lens->pdf, cosine);
+    path.density = weight_.direct_density(point->pdf, lens->pdf, cosine);
     if (!(path.density > 0) || !std::isfinite(path.density)) return std::nullopt;
     path.wavelengths = Wavelengths::sample(u.lambda);
     if (end_secondary_) path.wavelengths.end_secondary();

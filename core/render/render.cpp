@@ -133,8 +133,8 @@ class CameraPass {
         if (!weight_.off()) first.emplace(weight_, camera_ray.ray, density_, settings_.sensor, landings);
         FirstHit hit;
         FirstHit* const wanted = film_.count_of(Layer::aovs) ? &hit : nullptr;
-        const Sight sight = look(scene_, ray, sample.wavelengths, sample.sampler, path_, wanted,
-                                 &work.counters.rays, first ? &*first : nullptr);
+        const Sight sight = trace_camera_ray(scene_, ray, sample.wavelengths, sample.sampler, path_, wanted,
+                                             &work.counters.rays, first ? &*first : nullptr);
         if (wanted) add_aov(sample, ray.time, hit);
         const Spectrum weight(camera_ray.weight * sample.weight);
         if (reprojected_) {
@@ -178,7 +178,7 @@ class CameraPass {
         PathSampler sampler = sample.sampler;
         const Landings landings = land(density_, settings_.sensor, hero, others, sampler.next_1d());
         for (const Landing& l : landings) {   // the hero's pixel is first
-            const auto to_film = [&](const Radiance& r) { return r.hero * own + r.shared * l.weight; };
+            const auto to_film = [&](const Radiance& r) { return r.hero * own + r.any_hero * l.weight; };
             film_.add_locked(l.pixel.x, l.pixel.y, sample.index, sample.wavelengths,
                              arrived(sample, sight, l.weight, to_film));
             own = 0.f;

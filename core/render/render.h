@@ -78,7 +78,7 @@ struct RenderSettings {
     std::shared_ptr<const LightGuide> light_guide;   // for this plan; null: each call builds one
     FlarePlan flare;                            // needs an exact lens and a film with a flare layer
     ScatterPlan scatter;                        // needs an exact lens and a film with a flare layer
-    std::shared_ptr<const PlateLight> plate;    // a photograph of the set; null: the set's materials light objects
+    std::shared_ptr<const PlateLight> plate;    // a photograph that lights objects; null: the materials of catchers do
 };
 
 /// Draws samples [sample_begin, sample_end) of every pixel of the film's region, or a part of a round.

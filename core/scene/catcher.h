@@ -1,5 +1,5 @@
-// catcher.h -- shadow catchers: parts of the scene that model the set visible in a photograph, and receive the changes
-// of light that objects cause.
+// catcher.h -- shadow catchers: parts of the scene that model the things in a photograph, and receive the changes of
+// light that objects cause.
 #pragma once
 #include <cstdint>
 

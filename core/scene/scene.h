@@ -110,11 +110,11 @@ class Scene {
     }
     /// Whether the surfaces of an instance only separate media.
     bool is_invisible(std::uint32_t instance) const { return has_bounded_media_ && media_[instance].invisible; }
-    /// Transmittance from `begin` to `end` m along the ray.
-    Spectrum left_after(const Interior& in, const Ray& ray, float begin, float end,
-                        const Wavelengths& wavelengths) const {
-        const Spectrum left = in.transmittance(end - begin);
-        return in.medium ? left * through_medium(in, ray, begin, end, wavelengths) : left;
+    /// Transmittance of a volume or medium from `begin` to `end` m along the ray.
+    Spectrum transmittance_through(const Interior& in, const Ray& ray, float begin, float end,
+                                   const Wavelengths& wavelengths) const {
+        const Spectrum of_volume = in.transmittance(end - begin);
+        return in.medium ? of_volume * through_medium(in, ray, begin, end, wavelengths) : of_volume;
     }
     /// A ray in the space of a medium's density grid.
     GridRay grid_ray(const Interior& in, const Ray& ray) const;
@@ -126,7 +126,7 @@ class Scene {
         return effects ? &*effects : nullptr;
     }
     /// Whether a light (index in lights(), or LightSet::kEnvironment) belongs to an object. Lamps without a mesh and
-    /// the environment belong to the set.
+    /// the environment do not: like catchers, they are part of the scene without objects.
     bool is_of_object(std::int32_t light) const;
 
     /// Material at the hit's time.

@@ -46,18 +46,18 @@ Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, Interior
     std::ranges::sort(hits, {}, [](const RawHit& h) {
         return std::tuple(h.t, h.instance, h.primitive);
     });
-    Spectrum left{1.f};
+    Spectrum transmittance{1.f};
     float here = 0, next = 0;
     for (const RawHit& hit : hits) {
         if (hit.t < next) continue;
         SurfaceHit surface;
         find_surface(ray, hit, surface);
-        left *= left_after(medium, ray, here, hit.t, wavelengths);
+        transmittance *= transmittance_through(medium, ray, here, hit.t, wavelengths);
         here = hit.t;
         next = here + surface.error / std::abs(dot(surface.ng, surface.wo));
         if (is_invisible(hit.instance)) {
             medium = medium_behind(medium, hit.instance, {}, false, surface.front);
-            if (left.is_black()) return 0.f;
+            if (transmittance.is_black()) return 0.f;
             continue;
         }
         const MaterialAt now = material(surface);
@@ -65,14 +65,15 @@ Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, Interior
         std::visit(
             [&](const auto& kind) {
                 const bool bent = kind.bounds_volume() && !crossings.volumes;
-                left *= bent ? Spectrum(0.f) : kind.straight_transmittance(surface.wo);
+                transmittance *= bent ? Spectrum(0.f) : kind.straight_transmittance(surface.wo);
                 medium = beyond(medium, hit.instance, kind.interior(), kind.bounds_volume(), surface.front);
             },
             bsdf);
-        if (left.is_black()) return 0.f;
+        if (transmittance.is_black()) return 0.f;
     }
     const bool finite = distance < std::numeric_limits<float>::infinity();
-    return finite || medium.medium ? left * left_after(medium, ray, here, distance, wavelengths) : left;
+    if (finite || medium.medium) transmittance *= transmittance_through(medium, ray, here, distance, wavelengths);
+    return transmittance;
 }
 
 }  // namespace dg

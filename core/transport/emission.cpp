@@ -8,14 +8,14 @@
 namespace dg {
 namespace {
 
-/// MIS weight of BSDF sampling for an emitter that light sampling at the last vertex finds with the density
-/// `light_pdf`.
+/// MIS weight of BSDF sampling against light sampling, for an emitter that light sampling at the last vertex finds with
+/// the density `light_pdf`. The weight against light paths (LightPathMis) is a separate factor.
 float bsdf_weight(const PathState& path, float light_pdf) {
     using Strategy = PathSettings::Strategy;
     const LastVertex& last = path.walk.last;
     if (last.delta || light_pdf <= 0 || path.settings.strategy == Strategy::bsdf) return 1;
     if (path.settings.strategy == Strategy::light) return 0;
-    return power_heuristic(last.bsdf_pdf, float(last.tries) * light_pdf);
+    return power_heuristic(last.bsdf_pdf, float(last.candidates) * light_pdf);
 }
 
 EmitterMet met(const WalkState& walk, float distance, float light_pdf) {
@@ -31,22 +31,22 @@ Spectrum sky_emission(const PathState& path) {
     if (!lights.has_environment()) return walk.throughput * Spectrum(0.f);
     const Vec3f direction = walk.ray.direction;
     const float pdf = walk.last.delta ? 0 : lights.pdf_environment(direction, walk.last.position, walk.ray.time);
-    const float left = walk.sharing.off()
-                           ? 1
-                           : walk.sharing.left_of_sky(met(walk, std::numeric_limits<float>::infinity(), pdf));
-    return walk.throughput *
-           (lights.environment_radiance(direction, walk.ray.time, path.wavelengths) * (left * bsdf_weight(path, pdf)));
+    const float camera_weight =
+        walk.light_mis.off() ? 1
+                             : walk.light_mis.weight_of_sky(met(walk, std::numeric_limits<float>::infinity(), pdf));
+    return walk.throughput * (lights.environment_radiance(direction, walk.ray.time, path.wavelengths) *
+                              (camera_weight * bsdf_weight(path, pdf)));
 }
 
 Spectrum sphere_emission(const PathState& path, std::uint32_t sphere, const SurfaceHit& hit) {
     const WalkState& walk = path.walk;
     const LightSet& lights = path.scene.lights();
     const float pdf = walk.last.delta ? 0 : lights.pdf_sphere(sphere, walk.last.position, hit.time);
-    const float left = walk.sharing.off() ? 1
-                                          : walk.sharing.left_of_sphere(lights, sphere, hit,
-                                                                        met(walk, walk.last.windows + hit.t, pdf));
+    const float distance = walk.last.window_distance + hit.t;
+    const float camera_weight =
+        walk.light_mis.off() ? 1 : walk.light_mis.weight_of_sphere(lights, sphere, hit, met(walk, distance, pdf));
     return walk.throughput * lights.sphere_radiance(sphere, hit.wo, hit.time, path.wavelengths) *
-           (left * bsdf_weight(path, pdf));
+           (camera_weight * bsdf_weight(path, pdf));
 }
 
 Spectrum surface_emission(const PathState& path, const Material& material, const SurfaceHit& hit) {
@@ -59,14 +59,14 @@ Spectrum surface_emission(const PathState& path, const Material& material, const
     const Rgb luminance = emitted(material, path.scene.textures(), lookup) * path.scene.shaping(material, hit);
     if (max_component(luminance) <= 0) return walk.throughput * Spectrum(0.f);
     const LightSet& lights = path.scene.lights();
-    const float distance = walk.last.windows + hit.t;
+    const float distance = walk.last.window_distance + hit.t;
     const float cosine = std::abs(dot(hit.ng, hit.wo));
     const float pdf = walk.last.delta ? 0
                                       : lights.pdf_triangle(hit.instance, hit.primitive, distance, cosine,
                                                             walk.last.position, hit.time);
-    const float left =
-        walk.sharing.off() ? 1 : walk.sharing.left_of_triangle(lights, hit, met(walk, distance, pdf));
-    return walk.throughput * (path.wavelengths.emission(luminance) * (left * bsdf_weight(path, pdf)));
+    const float camera_weight =
+        walk.light_mis.off() ? 1 : walk.light_mis.weight_of_triangle(lights, hit, met(walk, distance, pdf));
+    return walk.throughput * (path.wavelengths.emission(luminance) * (camera_weight * bsdf_weight(path, pdf)));
 }
 
 }  // namespace dg

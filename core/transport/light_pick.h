@@ -20,7 +20,7 @@ namespace dg {
 /// Number of candidate light samples at a vertex: 1 in scenes with few lights, and fewer at vertices that the camera
 /// sees neither directly nor through specular bounces. CPU time x error of bench/first_picture.py is the same from four
 /// to eight.
-inline int light_tries(const LightSet& lights, bool in_view) {
+inline int light_candidates(const LightSet& lights, bool in_view) {
     constexpr std::size_t kFew = 4;
     if (lights.empty()) return 0;
     return lights.choices() <= kFew ? 1 : in_view ? int(LightSet::kMostSamples) : 2;
@@ -33,11 +33,11 @@ class LightPick {
         Vec2f place;    // the points on them
         float pick;     // the candidate
     };
-    /// Picks a sample among `tries` candidates. `shared`: BSDF sampling can find the same light. `evaluate` returns the
-    /// BSDF toward a light; `throughput` weighs its wavelengths.
+    /// Picks a sample among `candidates` candidates. `mis`: BSDF sampling can find the same light. `evaluate` returns
+    /// the BSDF toward a light; `throughput` weighs its wavelengths.
     template <typename Evaluate>
     static std::optional<DirectLight> pick(const Scene& scene, const SurfaceHit& hit, const Wavelengths& wavelengths,
-                                           int tries, bool shared, const Random& u, Spectrum throughput,
+                                           int candidates, bool mis, const Random& u, Spectrum throughput,
                                            const Evaluate& evaluate);
 
   private:
@@ -49,28 +49,28 @@ class LightPick {
 
 template <typename Evaluate>
 std::optional<DirectLight> LightPick::pick(const Scene& scene, const SurfaceHit& hit,
-                                           const Wavelengths& wavelengths, int tries, bool shared, const Random& u,
+                                           const Wavelengths& wavelengths, int candidates, bool mis, const Random& u,
                                            Spectrum throughput, const Evaluate& evaluate) {
     LightPick all;
     scene.lights().sample_several(u.select, u.place, hit.position, hit.time, wavelengths,
-                                  std::span(all.lights_).first(std::size_t(tries)));
+                                  std::span(all.lights_).first(std::size_t(candidates)));
     float sum = 0;
-    for (int i = 0; i < tries; ++i) {
+    for (int i = 0; i < candidates; ++i) {
         const LightSample& light = all.lights_[i];
         all.worth_[i] = 0;
         if (!(light.pdf > 0)) continue;
         const Evaluation& e = all.f_[i] = evaluate(light.wi);
-        const bool alone = light.delta || !shared;
-        all.weight_[i] = (alone ? 1 : power_heuristic(float(tries) * light.pdf, e.pdf)) / light.pdf;
+        const bool light_only = light.delta || !mis;
+        all.weight_[i] = (light_only ? 1 : power_heuristic(float(candidates) * light.pdf, e.pdf)) / light.pdf;
         all.worth_[i] = (throughput * e.f_cos * light.radiance).average() * all.weight_[i];
         sum += all.worth_[i];
     }
     if (!(sum > 0) || !std::isfinite(sum)) return std::nullopt;
-    float left = u.pick * sum;
+    float rest = u.pick * sum;
     int chosen = -1;
-    for (int i = 0; i < tries && (chosen < 0 || left >= 0); ++i)
-        if (all.worth_[i] > 0) chosen = i, left -= all.worth_[i];
-    const float share = sum / (float(tries) * all.worth_[chosen]);
+    for (int i = 0; i < candidates && (chosen < 0 || rest >= 0); ++i)
+        if (all.worth_[i] > 0) chosen = i, rest -= all.worth_[i];
+    const float share = sum / (float(candidates) * all.worth_[chosen]);
     DirectLight found{all.lights_[chosen], all.f_[chosen], all.weight_[chosen] * share};
     if (found.light.uneven) scene.resolve(found.light, hit.time, wavelengths);
     return found;

@@ -108,12 +108,12 @@ Material glossy() {
 
 TEST_CASE("few lights are sampled one at a time") {
     std::vector<Light> lights(4, PointLight{{0, 1, 0}, {1, 1, 1}});
-    CHECK(light_tries(LightSet{}, true) == 0);
-    CHECK(light_tries(LightSet(lights, std::nullopt), true) == 1);
+    CHECK(light_candidates(LightSet{}, true) == 0);
+    CHECK(light_candidates(LightSet(lights, std::nullopt), true) == 1);
     lights.push_back(DirectionalLight{{0, -1, 0}, {1, 1, 1}});
     const LightSet many(lights, std::nullopt);
-    CHECK(light_tries(many, true) > light_tries(many, false));
-    CHECK(light_tries(many, false) > 1);
+    CHECK(light_candidates(many, true) > light_candidates(many, false));
+    CHECK(light_candidates(many, false) > 1);
 }
 
 TEST_CASE("picked light is the light that following the BSDF finds, at every depth") {
@@ -151,11 +151,11 @@ TEST_CASE("what is left as noise is shadows, not the choice") {
         const Bsdf bsdf = shade(ground, {}, hit, wavelengths);
         const LightPick::Random u{sampler.next_1d(), sampler.next_2d(), sampler.next_1d()};
         const auto toward = [&](Vec3f wi) { return evaluate_with_pdf(bsdf, hit.wo, wi); };
-        for (const int tries : {1, 4}) {
-            const auto found = LightPick::pick(*scene, hit, wavelengths, tries, false, u, 1.f, toward);
+        for (const int candidates : {1, 4}) {
+            const auto found = LightPick::pick(*scene, hit, wavelengths, candidates, false, u, 1.f, toward);
             const double brought =
                 found ? (found->f.f_cos * found->light.radiance * found->weight).average() : 0;
-            (tries == 1 ? one : picked).push_back(brought);
+            (candidates == 1 ? one : picked).push_back(brought);
         }
     }
     const SampleMoments a = moments(one), b = moments(picked);

@@ -31,12 +31,12 @@ std::optional<LightWalk> LightWalk::begin(const Scene& scene, const LightSharing
         walk.medium_ = scene.medium_around(walk.ray_);
         const Medium* const fog = walk.medium_.medium;   // attenuates light from infinity along an endless ray
         if (walk.infinite() && fog && !fog->density)
-            walk.flux_ *= scene.left_after(walk.medium_, walk.ray_, 0, std::numeric_limits<float>::infinity(),
-                                           walk.wavelengths_);
+            walk.flux_ *= scene.transmittance_through(walk.medium_, walk.ray_, 0,
+                                                      std::numeric_limits<float>::infinity(), walk.wavelengths_);
         if (walk.flux_.is_black()) return std::nullopt;
     }
     walk.start_ = walk.flux_;
-    walk.odds_ = sharing.of_bounced(emitted->pdf);
+    walk.light_camera_ratio_ = sharing.bounced_density(emitted->pdf);
     return walk;
 }
 
@@ -53,7 +53,7 @@ std::optional<Scene::Hit> LightWalk::meet_visible() {
         const auto found = scene_->intersect(ray_);
         if (!found) return found;
         const SurfaceHit& hit = found->surface;
-        if (medium_.medium) flux_ *= scene_->left_after(medium_, ray_, ray_.t_min, hit.t, wavelengths_);
+        if (medium_.medium) flux_ *= scene_->transmittance_through(medium_, ray_, ray_.t_min, hit.t, wavelengths_);
         if (found->sphere_light >= 0 || !scene_->is_invisible(hit.instance)) return found;
         absorb(hit.t);
         medium_ = scene_->beyond(medium_, hit.instance, {}, false, hit.front);
@@ -74,7 +74,7 @@ bool LightWalk::meet(std::optional<LightVertex>& vertex) {
 }
 
 bool LightWalk::sends(LightVertex& vertex) const {
-    return !is_last() && vertices_ > 0 && !is_specular(vertex.both().seen_from(vertex.hit().wo));
+    return !is_last() && vertices_ > 0 && !is_specular(vertex.bidirectional().seen_from(vertex.hit().wo));
 }
 
 /// Crosses a surface along `w`. Returns the transmittance of the volume around the emitter if the walk leaves it here,
@@ -86,13 +86,13 @@ std::optional<Spectrum> LightWalk::enter(VolumeState& volume, const Bsdf& bsdf, 
     return std::visit(
         [&](const auto& b) -> std::optional<Spectrum> {
             if (!b.bounds_volume()) return 1.f;
-            Spectrum left{1.f};
+            Spectrum transmittance{1.f};
             if (volume.where == VolumeState::Where::unknown && !entering) {
                 if (infinite()) return std::nullopt;
-                left = b.interior().transmittance(unknown_);
+                transmittance = b.interior().transmittance(unknown_);
             }
             if (!volume.cross(b.interior(), entering)) return std::nullopt;
-            return left;
+            return transmittance;
         },
         bsdf);
 }
@@ -114,24 +114,24 @@ double LightWalk::camera_density(const SurfaceHit& hit, float bsdf_pdf) const {
 
 std::optional<LightWalk::Sent> LightWalk::send(LightVertex& vertex, Vec3f w, float lens_pdf) const {
     const SurfaceHit& hit = vertex.hit();
-    const Scattering s = vertex.both().scattering(w, hit.wo);
+    const Scattering s = vertex.bidirectional().scattering(w, hit.wo);
     if (s.f_cos.is_black() || s.hero_only) return std::nullopt;
     VolumeState volume = volume_;
-    const auto left = enter(volume, vertex.both().seen_from(w), hit, w);
-    if (!left || volume.where == VolumeState::Where::inside) return std::nullopt;
+    const auto transmittance = enter(volume, vertex.bidirectional().seen_from(w), hit, w);
+    if (!transmittance || volume.where == VolumeState::Where::inside) return std::nullopt;
     const double cosine = std::abs(double(dot(hit.ng, w)));
     Sent sent;
-    sent.density = odds_ * lens_pdf / (cosine * camera_density(hit, s.camera_pdf));
+    sent.density = light_camera_ratio_ * lens_pdf / (cosine * camera_density(hit, s.camera_pdf));
     if (!(sent.density > 0) || !std::isfinite(sent.density)) return std::nullopt;
     const double turned = cosine / std::abs(double(dot(hit.ng, hit.wo)));
-    sent.radiance = flux_ * s.f_cos * *left *
-                    float(reach() * turned / lens_pdf * sent.density / sharing_->of_bounced(1));
+    sent.radiance = flux_ * s.f_cos * *transmittance *
+                    float(reach() * turned / lens_pdf * sent.density / sharing_->bounced_density(1));
     return sent;
 }
 
 bool LightWalk::go_on(LightVertex& vertex, const Random& u) {
     const bool last = is_last();
-    const auto step = vertex.both().step(vertex.hit().wo, u.lobe, u.direction);
+    const auto step = vertex.bidirectional().step(vertex.hit().wo, u.lobe, u.direction);
     if (!step || !pass(vertex, *step)) return false;
     if (last && distance_ == 0) return false;
     return survives();
@@ -140,18 +140,19 @@ bool LightWalk::go_on(LightVertex& vertex, const Random& u) {
 /// Continues beyond a vertex or a window. False: the walk ends.
 bool LightWalk::pass(LightVertex& vertex, const LightStep& step) {
     const SurfaceHit& hit = vertex.hit();
-    const Bsdf& bsdf = vertex.both().seen_from(step.to_camera);
+    const Bsdf& bsdf = vertex.bidirectional().seen_from(step.to_camera);
     const bool bounds = std::visit([](const auto& b) { return b.bounds_volume(); }, bsdf);
     const Vec3f w = step.to_camera;
     if (!(step.specular && step.transmitted && !bounds)) {
         // Camera paths cannot connect a delta lobe to a delta light.
         if (step.specular && delta_ && vertices_ == 0) return false;
-        const auto left = enter(volume_, bsdf, hit, w);
-        if (!left) return false;
-        flux_ *= *left * reach();
+        const auto transmittance = enter(volume_, bsdf, hit, w);
+        if (!transmittance) return false;
+        flux_ *= *transmittance * reach();
         if (!step.specular)
-            odds_ *= step.pdf / (std::abs(double(dot(hit.ng, w))) * camera_density(hit, step.camera_pdf));
-        if (!(odds_ > 0) || !std::isfinite(odds_)) return false;
+            light_camera_ratio_ *=
+                step.pdf / (std::abs(double(dot(hit.ng, w))) * camera_density(hit, step.camera_pdf));
+        if (!(light_camera_ratio_ > 0) || !std::isfinite(light_camera_ratio_)) return false;
         ++vertices_;
         distance_ = 0;
     }

@@ -22,17 +22,17 @@ namespace dg {
 class LightVertex {
   public:
     LightVertex(const Scene& scene, const SurfaceHit& hit, const Wavelengths& wavelengths)
-        : hit_(hit), material_(scene.material(hit_)), both_(material_, scene.textures(), hit_, wavelengths) {}
+        : hit_(hit), material_(scene.material(hit_)), bidirectional_(material_, scene.textures(), hit_, wavelengths) {}
     LightVertex(const LightVertex&) = delete;
     LightVertex& operator=(const LightVertex&) = delete;
 
     const SurfaceHit& hit() const { return hit_; }
-    PathVertex& both() { return both_; }
+    PathVertex& bidirectional() { return bidirectional_; }
 
   private:
     SurfaceHit hit_;
     MaterialAt material_;
-    PathVertex both_;
+    PathVertex bidirectional_;
 };
 
 class LightWalk {
@@ -103,7 +103,7 @@ class LightWalk {
     bool delta_ = false;
     Ray ray_{};
     Spectrum flux_{0.f}, start_{0.f};
-    double odds_ = 0;          // density ratio of path_mis.h, accumulated from the light
+    double light_camera_ratio_ = 0;   // density ratio of path_mis.h, accumulated from the light
     int vertices_ = 0;
     float distance_ = 0;       // m from the last vertex or the light, through windows
     float unknown_ = 0;        // m through the volume around the emitter, as long as that volume is unknown

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "math/below_one.h"
+#include "math/error.h"
 #include "transport/catcher/one_world.h"
 #include "transport/catcher/two_worlds.h"
 #include "transport/emission.h"
@@ -44,7 +45,8 @@ RayCone next_cone(const Scene& scene, const RayCone& cone, const SurfaceHit& hit
 }
 
 /// A path tracer's loop over vertices, with light sampling and BSDF sampling at each. `Worlds` is OneWorld, or
-/// TwoWorlds for scenes with catchers and plates. Functions that return false end the path.
+/// TwoWorlds for scenes with catchers and plates. Functions that return false end the path. `vertex`: index of the vertex
+/// that the ray leads to, from 0, or of the window (walk.h) before that vertex.
 template <class Worlds>
 class Path : public PathState {
   public:
@@ -54,9 +56,9 @@ class Path : public PathState {
         walk.ray = ray;
         walk.last.position = ray.origin;
         if (scene.has_media()) walk.media.interior = scene.medium_around(walk.ray);
-        walk.sharing.first = first;
-        if (first) bounces_.emplace(*first);
-        if (bounces_ && bounces_->open()) walk.sharing.bounces = &*bounces_;
+        walk.light_mis.first_ray = first;
+        if (first) path_mis_.emplace(*first);
+        if (path_mis_ && path_mis_->open()) walk.light_mis.path_mis = &*path_mis_;
     }
     Path(const Path&) = delete;
     Path& operator=(const Path&) = delete;
@@ -66,10 +68,11 @@ class Path : public PathState {
     bool follow() { return follow(0); }
 
     /// Branches the path: runs `branch` and restores the state; the radiance that the branch gathered stays. The branch
-    /// draws random numbers beyond the `skipped` dimensions. Paths that share light with light paths must not branch,
-    /// as bounces_ is not saved.
+    /// draws random numbers beyond the `skipped` dimensions. A path must not branch while it has the MIS of light paths
+    /// with bounces: path_mis_, which accumulates over vertices, is not saved.
     template <typename Branch>
-    void aside(int skipped, const Branch& branch) {
+    void branch_off(int skipped, const Branch& branch) {
+        DG_CHECK(walk.light_mis.path_mis, ==, nullptr);
         const WalkState walk_before = walk;
         const typename Worlds::State worlds_before = worlds_.state;
         const PathSampler sampler_before = sampler;
@@ -84,14 +87,14 @@ class Path : public PathState {
 
     /// Follows a branch that has just left a vertex to its end, unless roulette ends it.
     void follow_to_end(int vertex) {
-        const int next = vertex + walk.last.is_ray_origin();
+        const int next = vertex + walk.last.no_window_since();   // a window is no vertex
         if (next < settings.roulette_depth || survives_roulette(walk, sampler.next_1d())) follow(next);
     }
 
     /// Traces the ray through media to the next hit and processes the hit.
     bool step(int vertex) {
         ++rays;
-        const bool counted = counts(vertex);
+        const bool counts = counts_emission(vertex);
         auto found = scene.intersect(walk.ray);
         if (walk.media.interior.medium) {
             const bool last = vertex == settings.max_depth;
@@ -99,10 +102,10 @@ class Path : public PathState {
             if (!after_crossing(event, vertex)) return false;
             if (event.kind != MediumEvent::Kind::passed) return true;
         }
-        return found ? worlds_.arrive(*this, *found, vertex, counted) : leave_scene(counted);
+        return found ? worlds_.arrive(*this, *found, vertex, counts) : leave_scene(counts);
     }
 
-    /// Processes a hit on a surface or a sphere light.
+    /// Processes a hit on a surface or a sphere light. `counts`: from counts_emission().
     bool arrive(Scene::Hit& found, int vertex, bool counts) {
         SurfaceHit& hit = found.surface;
         if (walk.media.interior.present) walk.throughput *= walk.media.interior.transmittance(hit.t);
@@ -122,18 +125,20 @@ class Path : public PathState {
     }
 
   private:
-    using SharedVertex = PathMis::Vertex;   // a null pointer: no MIS with light paths from here on
+    using MisVertex = PathMis::Vertex;   // a null pointer: no MIS with light paths that have bounces, from here on
 
     bool follow(int vertex) {
-        for (;; vertex += walk.last.is_ray_origin()) {   // a window is no vertex
+        for (;; vertex += walk.last.no_window_since()) {   // a window is no vertex
             if (!is_traceable(walk.ray)) return traced_ = false;
             if (!step(vertex)) return traced_;
+            // Roulette counts a window as a vertex, and may begin at the window before vertex `roulette_depth`.
             if (vertex + 1 >= settings.roulette_depth && !survives_roulette(walk, sampler.next_1d())) return traced_;
         }
     }
 
-    /// Whether emission hit here counts. Other passes render excluded emission.
-    bool counts(int vertex) const {
+    /// Whether the path gathers the emission of an emitter that it hits. Only flare (render/flare/flare_aim.cpp) excludes
+    /// emission: emitters in sight, which its emitter points sample, and caustics, which paths find too seldom.
+    bool counts_emission(int vertex) const {
         const bool caustic = walk.last.delta && !walk.in_view;
         return (settings.visible_emitters || vertex > 0) && (settings.caustics || !caustic);
     }
@@ -147,7 +152,7 @@ class Path : public PathState {
     /// Passes a window where only the medium changes.
     bool pass_boundary(const SurfaceHit& hit) {
         walk.media.interior = scene.beyond(walk.media.interior, hit.instance, {}, false, hit.front);
-        walk.last.windows += hit.t;
+        walk.last.window_distance += hit.t;
         const RayCone cone = walk.ray.cone;
         spawn(hit, walk.ray.direction, cone.empty() ? cone : cone.after(hit.t));
         return true;
@@ -161,52 +166,52 @@ class Path : public PathState {
         if (event.lamp.direct.weight > 0)
             gather_direct(phase, in_medium(walk.ray, event.lamp.t), event.lamp.direct, event.lamp_throughput, nullptr);
         if (event.kind == Kind::passed || event.kind == Kind::ended) return event.kind == Kind::passed;
-        walk.sharing.bounces = nullptr;   // light paths are not scattered by media
+        walk.light_mis.path_mis = nullptr;   // light paths are not scattered by media
         const SurfaceHit at = in_medium(walk.ray, event.t);
-        if (event.kind == Kind::collided) return leave(phase, at, vertex, nullptr);
-        go(phase, at, {.wi = event.wi, .weight = 1.f, .pdf = event.phase_pdf}, nullptr);
-        walk.last.bsdf_pdf /= event.odds, walk.last.tries = 1;
+        if (event.kind == Kind::collision) return sample_vertex(phase, at, vertex, nullptr);
+        leave(phase, at, {.wi = event.wi, .weight = 1.f, .pdf = event.phase_pdf}, nullptr);
+        walk.last.bsdf_pdf /= event.light_samples_per_collision, walk.last.candidates = 1;   // as in lamp_sampler.h
         return true;
     }
 
     /// Evaluates the BSDF at a surface and continues from there.
     bool scatter(const Material& material, SurfaceHit& hit, int vertex) {
-        if (walk.sharing.bounces) return scatter_shared(material, hit, vertex);
+        if (walk.light_mis.path_mis) return scatter_with_light_mis(material, hit, vertex);
         const Bsdf bsdf = shade(material, scene.textures(), hit, wavelengths);
-        return leave_by_kind(bsdf, material, hit, vertex, nullptr);
+        return sample_vertex_by_kind(bsdf, material, hit, vertex, nullptr);
     }
 
-    /// scatter() for a path that shares light with light paths. Separate, because gcc zeroes the storage of an optional
-    /// vertex (bug 86173): 1.7 kB at each surface.
-    bool scatter_shared(const Material& material, SurfaceHit& hit, int vertex) {
+    /// scatter() for a path with MIS against light paths with bounces. Separate, because gcc zeroes the storage of an
+    /// optional vertex (bug 86173): 1.7 kB at each surface.
+    bool scatter_with_light_mis(const Material& material, SurfaceHit& hit, int vertex) {
         const SurfaceHit bare = hit;
         const Bsdf bsdf = shade(material, scene.textures(), hit, wavelengths);
-        SharedVertex shared(scene, material, bare, wavelengths, bsdf);
-        return leave_by_kind(bsdf, material, hit, vertex, &shared);
+        MisVertex mis_vertex(scene, material, bare, wavelengths, bsdf);
+        return sample_vertex_by_kind(bsdf, material, hit, vertex, &mis_vertex);
     }
 
-    bool leave_by_kind(const Bsdf& bsdf, const Material& material, const SurfaceHit& hit, int vertex,
-                       SharedVertex* shared) {
+    bool sample_vertex_by_kind(const Bsdf& bsdf, const Material& material, const SurfaceHit& hit, int vertex,
+                               MisVertex* mis_vertex) {
         if (first_hit && !walk.guided && worlds_.finds_first_hit())
             note_surface(*this, material, hit, is_specular(bsdf));
-        return std::visit([&](const auto& kind) { return leave(kind, hit, vertex, shared); }, bsdf);
+        return std::visit([&](const auto& kind) { return sample_vertex(kind, hit, vertex, mis_vertex); }, bsdf);
     }
 
     /// Adds direct light and samples the next direction.
     template <Scatters B>
-    bool leave(const B& bsdf, const SurfaceHit& hit, int vertex, SharedVertex* shared) {
+    bool sample_vertex(const B& bsdf, const SurfaceHit& hit, int vertex, MisVertex* mis_vertex) {
         const bool last = vertex == settings.max_depth;
-        const int tries = light_tries(scene.lights(), walk.in_view);
-        const VertexRandom u = draw_vertex(bsdf, tries, sampler);
+        const int candidates = light_candidates(scene.lights(), walk.in_view);
+        const VertexRandom u = draw_vertex(bsdf, candidates, sampler);
         const auto view = seen_from(bsdf, hit.wo);
-        if (!last && !bsdf.is_specular()) sample_light(bsdf, view, tries, hit, u, shared);
+        if (!last && !bsdf.is_specular()) sample_light(bsdf, view, candidates, hit, u, mis_vertex);
         if constexpr (!B::kOneLobe)
             if (!last && walk.in_view && walk.splits < settings.splits && split(bsdf, hit, vertex)) return true;
         const auto sample = bsdf.sample(view, u.lobe, u.direction);
         if (!sample || sample->weight.is_black()) return false;
-        go(bsdf, hit, *sample, shared);
-        if (walk.last.is_ray_origin()) walk.last.tries = tries;
-        return !last || !walk.last.is_ray_origin();
+        leave(bsdf, hit, *sample, mis_vertex);
+        if (walk.last.no_window_since()) walk.last.candidates = candidates;
+        return !last || !walk.last.no_window_since();
     }
 
     /// Follows one of two lobes to its end, then continues with the other. Choosing one at random makes glass noisy,
@@ -216,23 +221,25 @@ class Path : public PathState {
         if (!bsdf.is_specular() || !bsdf.bounds_volume()) return false;
         const auto lobes = both_lobes(bsdf, hit.wo);
         if (!lobes) return false;
-        walk.sharing.bounces = nullptr;   // light paths cannot connect to the lens at a delta lobe
-        aside(kBranchDraws << walk.splits++, [&] {
-            go(bsdf, hit, (*lobes)[0], nullptr);
+        walk.light_mis.path_mis = nullptr;   // light paths cannot connect to the lens at a delta lobe
+        const int skipped = kBranchDraws << walk.splits;
+        ++walk.splits;
+        branch_off(skipped, [&] {
+            leave(bsdf, hit, (*lobes)[0], nullptr);
             follow_to_end(vertex);
         });
-        go(bsdf, hit, (*lobes)[1], nullptr);
+        leave(bsdf, hit, (*lobes)[1], nullptr);
         return true;
     }
 
     /// Leaves a vertex along a BSDF sample and spawns the next ray.
     template <Scatters B>
-    void go(const B& bsdf, const SurfaceHit& hit, const BsdfSample& sample, SharedVertex* shared) {
+    void leave(const B& bsdf, const SurfaceHit& hit, const BsdfSample& sample, MisVertex* mis_vertex) {
         const RayCone cone = next_cone(scene, walk.ray.cone, hit, sample);
         worlds_.leave(*this, bsdf, hit, sample);
         const bool through = sample.transmitted && sample.specular && (settings.see_through || !bsdf.bounds_volume());
-        walk.open = walk.open && through;
-        advance(bsdf, hit, sample, shared);
+        walk.unscattered = walk.unscattered && through;
+        advance(bsdf, hit, sample, mis_vertex);
         worlds_.uncover(*this, hit);
         // The throughput holds the hero's factor from here on, so earlier contributions keep their weights. A BSDF does
         // not disperse a path without secondary wavelengths.
@@ -242,41 +249,40 @@ class Path : public PathState {
 
     /// Updates the state. A clear sheet is no vertex: light sampling at the vertex before it passes through the sheet.
     template <Scatters B>
-    void advance(const B& bsdf, const SurfaceHit& hit, const BsdfSample& sample,
-                 SharedVertex* shared) {
+    void advance(const B& bsdf, const SurfaceHit& hit, const BsdfSample& sample, MisVertex* mis_vertex) {
         walk.throughput *= sample.weight;
         if (sample.transmitted) {
             walk.eta_squared *= sample.eta * sample.eta;
             walk.media.interior = interior_after(scene, walk.media.interior, hit, bsdf, sample.wi);
             if (sample.specular && !bsdf.bounds_volume()) {
-                walk.last.windows += hit.t;
+                walk.last.window_distance += hit.t;
                 return;
             }
         }
-        walk.sharing.leave(shared, sample);
+        walk.light_mis.leave(mis_vertex, sample);
         walk.in_view = walk.in_view && sample.specular;
-        walk.last = {hit.position, sample.pdf, walk.last.tries, sample.specular, 0};
+        walk.last = {hit.position, sample.pdf, walk.last.candidates, sample.specular, 0};
     }
 
-    /// Spawns the next ray from a hit, in the same world (full scene or set).
+    /// Spawns the next ray from a hit, in the same world: with or without objects.
     void spawn(const SurfaceHit& hit, Vec3f direction, RayCone cone) {
-        const bool of_set = walk.ray.of_set;
+        const bool without_objects = walk.ray.without_objects;
         walk.ray = spawn_ray(hit, direction, walk.ray.time);
         walk.ray.cone = cone;
-        walk.ray.of_set = of_set;
+        walk.ray.without_objects = without_objects;
     }
 
     /// Next-event estimation.
     template <Scatters B, typename View>
-    void sample_light(const B& bsdf, const View& view, int tries, const SurfaceHit& hit,
-                      const VertexRandom& u, SharedVertex* shared) {
+    void sample_light(const B& bsdf, const View& view, int candidates, const SurfaceHit& hit,
+                      const VertexRandom& u, MisVertex* mis_vertex) {
         using Strategy = PathSettings::Strategy;
         const bool mis = settings.strategy != Strategy::light, by_bsdf = settings.strategy == Strategy::bsdf;
-        if (tries > 1 && !by_bsdf) {
+        if (candidates > 1 && !by_bsdf) {
             const auto picked =
-                LightPick::pick(scene, hit, wavelengths, tries, mis, {u.select, u.light, u.lobe}, walk.throughput,
+                LightPick::pick(scene, hit, wavelengths, candidates, mis, {u.select, u.light, u.lobe}, walk.throughput,
                                 [&](Vec3f wi) { return bsdf.evaluate_with_pdf(view, wi); });
-            if (picked) gather_direct(bsdf, hit, *picked, walk.throughput, shared);
+            if (picked) gather_direct(bsdf, hit, *picked, walk.throughput, mis_vertex);
             return;
         }
         const auto light = scene.sample_light(u.select, u.light, hit.position, hit.time, wavelengths);
@@ -285,23 +291,24 @@ class Path : public PathState {
         const Evaluation f = bsdf.evaluate_with_pdf(view, light->wi);
         if (f.f_cos.is_black()) return;
         const float share = light->delta || !mis ? 1.f : power_heuristic(light->pdf, f.pdf);
-        gather_direct(bsdf, hit, {*light, f, share / light->pdf}, walk.throughput, shared);
+        gather_direct(bsdf, hit, {*light, f, share / light->pdf}, walk.throughput, mis_vertex);
     }
 
     /// Adds a light sample times its visibility.
     template <Scatters B>
     void gather_direct(const B& bsdf, const SurfaceHit& hit, const DirectLight& direct,
-                       Spectrum throughput, SharedVertex* shared) {
+                       Spectrum throughput, MisVertex* mis_vertex) {
         const LightSample& light = direct.light;
         const Interior interior = interior_after(scene, walk.media.interior, hit, bsdf, light.wi);
         Ray ray = ray_to_light(hit, light, walk.ray.time);
-        const auto visibility = [&](bool of_set) {
+        const auto visibility = [&](bool without_objects) {
             ++rays;
-            ray.of_set = of_set;
+            ray.without_objects = without_objects;
             return scene.visibility(ray, light.delta, interior, wavelengths);
         };
-        const float left = shared ? walk.sharing.bounces->of_sample(scene, *shared, light, wavelengths) : 1;
-        const float weight = direct.weight * left;
+        const float camera_weight =
+            mis_vertex ? walk.light_mis.path_mis->weight_of_sample(scene, *mis_vertex, light, wavelengths) : 1;
+        const float weight = direct.weight * camera_weight;
         const auto reflected = [&](Spectrum visible) {
             return throughput * (direct.f.f_cos * (light.radiance * visible * weight));
         };
@@ -309,15 +316,15 @@ class Path : public PathState {
     }
 
     Worlds worlds_;
-    std::optional<PathMis> bounces_;
-    bool traced_ = true;
+    std::optional<PathMis> path_mis_;   // walk.light_mis.path_mis points at it
+    bool traced_ = true;                // false: a ray was not traceable
 };
 
 template <class Worlds>
 Sight sight_of(Path<Worlds>&& path, std::uint64_t* ray_count) {
     if (!path.follow()) {
         Sight untraceable;
-        untraceable.light.shared = Spectrum(std::numeric_limits<float>::quiet_NaN());
+        untraceable.light.any_hero = Spectrum(std::numeric_limits<float>::quiet_NaN());
         return untraceable;
     }
     if (ray_count) *ray_count += path.rays;
@@ -329,11 +336,12 @@ Sight sight_of(Path<Worlds>&& path, std::uint64_t* ray_count) {
 Radiance radiance(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
                   const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
                   const FirstRay* first) {
-    return look(scene, ray, wavelengths, sampler, settings, hit, ray_count, first).light;
+    return trace_camera_ray(scene, ray, wavelengths, sampler, settings, hit, ray_count, first).light;
 }
 
-Sight look(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
-           const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count, const FirstRay* first) {
+Sight trace_camera_ray(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
+                       const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
+                       const FirstRay* first) {
     if (scene.has_catchers() || settings.plate)
         return sight_of(Path<TwoWorlds>(scene, settings, sampler, hit, wavelengths, ray, first), ray_count);
     return sight_of(Path<OneWorld>(scene, settings, sampler, hit, wavelengths, ray, first), ray_count);

@@ -76,10 +76,10 @@ TEST_CASE("a ray that is no ray becomes a bad sample, not a crash") {
     Wavelengths wavelengths = Wavelengths::sample(0.5f);
     Ray ray;
     ray.direction = {std::nanf(""), 0, 1};
-    CHECK(std::isnan(radiance(*scene, ray, wavelengths, sampler, {}, nullptr, nullptr).shared[0]));
+    CHECK(std::isnan(radiance(*scene, ray, wavelengths, sampler, {}, nullptr, nullptr).any_hero[0]));
     ray.direction = {0, 0, 1};
     ray.origin = {0, std::numeric_limits<float>::infinity(), 0};
-    CHECK(std::isnan(radiance(*scene, ray, wavelengths, sampler, {}, nullptr, nullptr).shared[0]));
+    CHECK(std::isnan(radiance(*scene, ray, wavelengths, sampler, {}, nullptr, nullptr).any_hero[0]));
 }
 
 TEST_CASE("the same numbers give the same radiance") {

@@ -71,7 +71,7 @@ Radiance look_down(const Scene& scene, int depth, int i, int splits = 5) {
     ray.direction = normalize(Vec3f{0, -1, -1});
     Radiance light = radiance(scene, ray, wavelengths, sampler, settings, nullptr, nullptr);
     const Spectrum sky = wavelengths.emission({1, 1, 1});
-    for (Spectrum* s : {&light.shared, &light.hero})
+    for (Spectrum* s : {&light.any_hero, &light.hero})
         for (int k = 0; k < kWavelengths; ++k) s->set(k, (*s)[k] / sky[k]);
     return light;
 }
@@ -134,10 +134,10 @@ TEST_CASE("what dispersive glass reflects belongs to all wavelengths, what it be
         const Radiance reflected = look_down(*scene, 1, i), both = look_down(*scene, 2, i);
         CHECK(reflected.hero.is_black());
         for (int k = 0; k < kWavelengths; ++k) {
-            CHECK(reflected.shared[k] == doctest::Approx(reflectance(1.5)).epsilon(0.2));
-            CHECK(both.shared[k] == reflected.shared[k]);
+            CHECK(reflected.any_hero[k] == doctest::Approx(reflectance(1.5)).epsilon(0.2));
+            CHECK(both.any_hero[k] == reflected.any_hero[k]);
         }
-        const double r = reflected.shared[0];
+        const double r = reflected.any_hero[0];
         CHECK(both.hero.average() == doctest::Approx((1 - r) * (1 - r)).epsilon(1e-4));
     }
 }

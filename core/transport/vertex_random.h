@@ -14,16 +14,16 @@ struct VertexRandom {
 /// Every vertex consumes the same four dimensions, which keeps samples stratified; dimensions that the BSDF does not
 /// need are skipped.
 template <Scatters B>
-VertexRandom draw_vertex(const B& bsdf, int tries, PathSampler& sampler) {
+VertexRandom draw_vertex(const B& bsdf, int candidates, PathSampler& sampler) {
     VertexRandom u;
     const bool specular = bsdf.is_specular();
-    if (tries > 0 && !specular) {
+    if (candidates > 0 && !specular) {
         u.select = sampler.next_1d();
         u.light = sampler.next_2d();
     } else {
         sampler.skip(2);
     }
-    if (B::kOneLobe && tries < 2)
+    if (B::kOneLobe && candidates < 2)
         sampler.skip(1);
     else
         u.lobe = sampler.next_1d();

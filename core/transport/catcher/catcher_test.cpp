@@ -110,7 +110,7 @@ Sight look_at(const Scene& scene, int i, const PathSettings& settings, std::uint
     const CameraRandom u = sampler.camera();
     const Ray ray = test_ray({0, 1, 3}, {1.4f * (u.film.x - 0.5f), -0.35f + 0.7f * (u.film.y - 0.5f), -1});
     // Reduces four wavelengths to their mean, so that sums over paths are comparable.
-    return look(scene, ray, Wavelengths::sample(u.lambda), sampler, settings, nullptr, nullptr);
+    return trace_camera_ray(scene, ray, Wavelengths::sample(u.lambda), sampler, settings, nullptr, nullptr);
 }
 
 struct Sums {
@@ -189,7 +189,7 @@ TEST_CASE("what the lens looks past an object to is covered by its share") {
     for (int i = 0; i < kPaths; ++i) {
         PathSampler sampler(i, 0, 0, 8);
         const Wavelengths w = Wavelengths::sample(sampler.camera().lambda);
-        const Sight s = look(*scene, test_ray({0, 0.5f, 3}, {0, 0, -1}), w, sampler, {}, nullptr, nullptr);
+        const Sight s = trace_camera_ray(*scene, test_ray({0, 0.5f, 3}, {0, 0, -1}), w, sampler, {}, nullptr, nullptr);
         CHECK(s.covers.sum() == doctest::Approx(1).epsilon(0.01));
         for (const Cover& c : s.covers) (c.instance == pane ? of_pane : of_ball) += c.share;
         for (const Cover& c : s.covers) CHECK((c.instance == pane || c.instance == behind));
@@ -213,8 +213,8 @@ TEST_CASE("smooth glass covers what is behind it, or lets it pass unbent") {
         const Wavelengths w = Wavelengths::sample(sampler.camera().lambda);
         same.camera();
         const Ray ray = test_ray({0.05f, 0.55f, 3}, {0, 0, -1});
-        opaque += look(*scene, ray, w, sampler, {}, nullptr, nullptr).covers.sum();
-        const Sight s = look(*scene, ray, w, same, through, nullptr, nullptr);
+        opaque += trace_camera_ray(*scene, ray, w, sampler, {}, nullptr, nullptr).covers.sum();
+        const Sight s = trace_camera_ray(*scene, ray, w, same, through, nullptr, nullptr);
         open += 1 - s.covers.sum();
         with += s.with.sum().average();
         expected += s.without.sum().average();

@@ -1,4 +1,5 @@
-// one_world.h -- gathers light in a scene without catchers and plates (compare two_worlds.h).
+// one_world.h -- gathers light in a scene without catchers and plates: the counterpart of TwoWorlds (two_worlds.h),
+// with the same functions, for the template parameter of Path. Functions and their comments: two_worlds.h.
 #pragma once
 #include "material/bsdf_sample.h"
 #include "material/material.h"
@@ -17,7 +18,7 @@ class OneWorld {
     bool finds_first_hit() const { return true; }
 
     void gather(PathState& path, Spectrum light, bool hero) const {
-        (hero ? path.sight.light.hero : path.sight.light.shared) += light;
+        (hero ? path.sight.light.hero : path.sight.light.any_hero) += light;
     }
     void gather_emission(PathState& path, Spectrum light) const { gather(path, light, path.walk.hero_only); }
     template <Scatters B, typename Visibility, typename Reflected>
@@ -32,7 +33,7 @@ class OneWorld {
         return path.arrive(found, vertex, counts);
     }
     bool sees_background(PathState& path) const {
-        return !(path.walk.open && path.settings.background == Background::transparent);
+        return !(path.walk.unscattered && path.settings.background == Background::transparent);
     }
     bool show_plate_sky(PathState&) const { return false; }
     void meet_sphere(PathState& path, std::uint32_t sphere) const { path.cover(Cover::kSpheres + sphere, 1); }

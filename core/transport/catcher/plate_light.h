@@ -1,5 +1,5 @@
-// plate_light.h -- a photograph of the set as a light source: objects reflect and refract it, and it lights them. The
-// camera of the photograph is known to `render` only.
+// plate_light.h -- a plate: the photograph behind the picture, as a light source that lights objects and is seen in
+// them. `render` implements it with the camera of the photograph.
 #pragma once
 #include <optional>
 

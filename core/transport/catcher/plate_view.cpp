@@ -5,9 +5,9 @@
 namespace dg {
 namespace {
 
-/// Whether the set does not occlude the ray.
+/// Whether no catcher occludes the ray.
 bool is_clear(PathState& path, Ray ray) {
-    ray.of_set = true;
+    ray.without_objects = true;
     ++path.rays;
     return !(path.scene.visibility(ray, false, {}, path.wavelengths).max() < 1);
 }

@@ -1,12 +1,13 @@
-// interior.h -- the volume or medium around a ray that leaves a vertex. Paths enter and leave volumes and media only
-// here; rules for nested volumes belong here.
+// interior.h -- the volume or medium around a ray that leaves a vertex of a camera path. Scene::beyond has the rule for
+// each boundary. It is also called for boundaries without a material (Path::pass_boundary), for light paths
+// (LightWalk), and for shadow rays (Scene::visibility).
 #pragma once
 #include "material/bsdf_kind.h"
 #include "scene/scene.h"
 
 namespace dg {
 
-/// `here`: interior on the side from which the path arrived. `wi`: direction of the outgoing ray.
+/// Interior around the ray that leaves `hit` along `wi`. `here`: interior on the side from which the path arrived.
 template <Scatters B>
 Interior interior_after(const Scene& scene, const Interior& here, const SurfaceHit& hit, const B& bsdf,
                         Vec3f wi) {

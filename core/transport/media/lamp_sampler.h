@@ -3,10 +3,11 @@
 //
 // The distance is drawn by equiangular sampling (equiangular.h) with probability 0.9, else by the free-path density.
 // The path itself may find the same light by being scattered after a free path and hitting the lamp. With densities
-// n(t) p_lamp and c(t) p_phase, the power heuristic would use n / c at the distance. Here it uses the ratio for
-// free-path sampling, 1 / probability of a collision: both estimators can compute it for any lamp, so their weights add
-// to 1. Equiangular sampling only lowers the variance of light sampling. Sources: Kulla and Fajardo 2012
-// (equiangular.h); Pharr, Jakob and Humphreys 2023, Physically Based Rendering, chapter 14.
+// n(t) p_lamp and c(t) p_phase, where n and c are densities of the distance t, the power heuristic would use n(t) /
+// c(t). Here it uses a ratio that does not depend on t or the lamp, the expected numbers of light samples and of
+// collisions on the segment (`light_samples_per_collision`): both estimators know it, so their weights add to 1.
+// Equiangular sampling only lowers the variance of light sampling. Sources: Kulla and Fajardo 2012 (equiangular.h);
+// Pharr, Jakob and Humphreys 2023, Physically Based Rendering, chapter 14.
 #pragma once
 #include <optional>
 
@@ -19,7 +20,7 @@ namespace dg {
 /// A light sample with a scattering distance.
 struct LampSample {
     DirectLight direct{};   // weight 0: no contribution
-    Spectrum scattered;     // scattering coefficient (1/m) times transmittance to the ray's origin
+    Spectrum scattering;    // scattering coefficient (1/m) times transmittance to the start of the segment
     float t = 0;            // m along the ray
 };
 
@@ -29,11 +30,12 @@ class LampSampler {
         float select, where;   // the lamp; the distance
         Vec2f place;           // the point on the lamp
     };
-    LampSampler(const PathState& path, const Phase& phase, const Segment& way)
-        : path_(path), phase_(phase), way_(way) {}
+    LampSampler(const PathState& path, const Phase& phase, const Segment& segment)
+        : path_(path), phase_(phase), segment_(segment) {}
 
-    /// `odds`: expected number of light samples over expected number of collisions of the path.
-    LampSample sample(float odds, const Random& u) const;
+    /// `light_samples_per_collision`: expected number of light samples over expected number of collisions at which the
+    /// path is scattered, on the segment.
+    LampSample sample(float light_samples_per_collision, const Random& u) const;
 
   private:
     struct Place {
@@ -45,7 +47,7 @@ class LampSampler {
 
     const PathState& path_;
     const Phase& phase_;
-    const Segment& way_;
+    const Segment& segment_;
 };
 
 /// A point of the ray as a surface hit, with normals opposite to the ray.

@@ -368,7 +368,7 @@ TEST_CASE("what a medium takes away counts as covered, and nothing else of it is
             PathSampler sampler(3, 5, std::uint32_t(i), 11);
             const Wavelengths wavelengths = Wavelengths::sample(sampler.camera().lambda);
             const Ray ray = test_ray({0.2f, 0.3f, 5}, {0, 0, -1});
-            const Sight sight = look(*scene, ray, wavelengths, sampler, deep(3), nullptr, nullptr);
+            const Sight sight = trace_camera_ray(*scene, ray, wavelengths, sampler, deep(3), nullptr, nullptr);
             covered += double(sight.covers.sum()) / kCount;
             for (const Cover& c : sight.covers) {
                 CHECK(c.instance == 1);

@@ -10,10 +10,10 @@
 namespace dg {
 namespace {
 
-/// Light samples per scattering event of a path with throughput 1: on segments that the camera sees directly or through
+/// Light samples per collision of a path with throughput 1: on segments that the camera sees directly or through
 /// specular bounces, and on other segments. More samples, or resampling among candidates, were measured to cost more
 /// time than they save noise (bench/fog.py).
-constexpr float kSamplesInView = 8, kSamplesPerCollision = 0.5f;
+constexpr float kLightSamplesPerCollisionInView = 8, kLightSamplesPerCollision = 0.5f;
 /// Expected contribution of a scattered path relative to an unscattered path of the same throughput. It is below 1, as
 /// light sampling already adds single scattering.
 constexpr float kScatteredWorth = 0.3f;
@@ -27,13 +27,13 @@ MediumCrossing::MediumCrossing(PathState& path)
     : path_(path),
       walk_(path.walk),
       medium_(*path.walk.media.interior.medium),
-      here_(medium_.at(path.wavelengths)) {}
+      coefficients_(medium_.at(path.wavelengths)) {}
 
 MediumEvent MediumCrossing::cross(float t, bool last) {
-    const float before = walk_.open ? walk_.share() : 0;
+    const float before = walk_.unscattered ? walk_.share() : 0;
     MediumEvent event;
     if (medium_.density) cross_grid(t, last, event);
-    else cross_even(t, last, event);
+    else cross_homogeneous(t, last, event);
     if (before > 0) {
         const float after = event.kind == MediumEvent::Kind::passed ? walk_.share() : 0;
         path_.sight.covers.add_veil(before - after);
@@ -41,49 +41,50 @@ MediumEvent MediumCrossing::cross(float t, bool last) {
     return event;
 }
 
-void MediumCrossing::cross_even(float t, bool last, MediumEvent& event) {
-    const Segment way(here_, t - walk_.ray.t_min, walk_.media.lanes, path_.wavelengths.secondary_ended);
-    if (!here_.emission.is_black()) event.emitted = walk_.throughput * way.emitted();
-    if (last || here_.scattering.is_black() || !(way.collides() > 0)) {
-        walk_.throughput *= way.left(way.length());
+void MediumCrossing::cross_homogeneous(float t, bool last, MediumEvent& event) {
+    const Segment segment(coefficients_, t - walk_.ray.t_min, walk_.media.lanes, path_.wavelengths.secondary_ended);
+    if (!coefficients_.emission.is_black()) event.emitted = walk_.throughput * segment.emitted();
+    if (last || coefficients_.scattering.is_black() || !(segment.collides() > 0)) {
+        walk_.throughput *= segment.transmittance_to(segment.length());
         if (!walk_.throughput.is_black()) event.kind = MediumEvent::Kind::passed;
         return;
     }
-    const float drawn = scattering_drawn(way);
-    sample_lamp(way, drawn, event);
-    const float u = path_.sampler.next_1d(), scatters = drawn * way.collides();
-    const bool met = u < scatters;
-    const float free_path = met ? way.free_collision(std::min(u / scatters, kBelowOne)) : 0;
-    if (!take(met ? way.scattered(free_path, drawn) : way.passed(drawn))) return;
-    if (met) scatter(free_path, event);
+    const float fraction = scattering_fraction(segment);
+    sample_lamp(segment, fraction, event);
+    const float u = path_.sampler.next_1d(), probability = fraction * segment.collides();
+    const bool scattered = u < probability;
+    const float free_path = scattered ? segment.free_collision(std::min(u / probability, kBelowOne)) : 0;
+    if (!take(scattered ? segment.scattered(free_path, fraction) : segment.passed(fraction))) return;
+    if (scattered) scatter(free_path, event);
     else event.kind = MediumEvent::Kind::passed;
 }
 
-/// Fraction of collisions at which the path is scattered; at the rest it passes with a lower weight. On segments that
+/// Fraction of collisions at which the path is scattered; at the others it passes with a lower weight. On segments that
 /// the camera sees the fraction is small in thin media and near 1 in dense media. On other segments it is 1, since
 /// weights would multiply along long paths.
-float MediumCrossing::scattering_drawn(const Segment& way) const {
+float MediumCrossing::scattering_fraction(const Segment& segment) const {
     if (!walk_.in_view || path_.scene.lights().empty()) return 1;
-    const float worth = kScatteredWorth * here_.scattering.average() / here_.extinction.average();
-    const float met = way.collides();
-    return std::min(1.f, worth / (worth * met + 1 - met));
+    const float worth = kScatteredWorth * coefficients_.scattering.average() / coefficients_.extinction.average();
+    const float collides = segment.collides();
+    return std::min(1.f, worth / (worth * collides + 1 - collides));
 }
 
-/// Takes one light sample on the segment, with a probability that is below 1 in thin media.
-void MediumCrossing::sample_lamp(const Segment& way, float drawn, MediumEvent& event) {
-    const float carried = std::min(1.f, walk_.share());
-    const float samples = (walk_.in_view ? kSamplesInView : kSamplesPerCollision) * carried;
-    const float chance = std::min(1.f, samples * way.collides());
-    event.odds = chance / (drawn * way.collides());
+/// Draws one light sample on the segment, with a probability that is below 1 in thin media. `fraction`: from
+/// scattering_fraction().
+void MediumCrossing::sample_lamp(const Segment& segment, float fraction, MediumEvent& event) {
+    const float share = std::min(1.f, walk_.share());
+    const float samples = (walk_.in_view ? kLightSamplesPerCollisionInView : kLightSamplesPerCollision) * share;
+    const float chance = std::min(1.f, samples * segment.collides());
+    event.light_samples_per_collision = chance / (fraction * segment.collides());
     const float u_chance = path_.sampler.next_1d();
     LampSampler::Random u;
     u.select = path_.sampler.next_1d(), u.where = path_.sampler.next_1d();
     u.place = path_.sampler.next_2d();
     if (u_chance >= chance) return;
-    event.lamp = LampSampler(path_, medium_.phase, way).sample(event.odds, u);
+    event.lamp = LampSampler(path_, medium_.phase, segment).sample(event.light_samples_per_collision, u);
     if (!(event.lamp.direct.weight > 0)) return;
     event.lamp.direct.weight /= chance;
-    event.lamp_throughput = walk_.throughput * event.lamp.scattered;
+    event.lamp_throughput = walk_.throughput * event.lamp.scattering;
 }
 
 void MediumCrossing::scatter(float free_path, MediumEvent& event) {
@@ -94,7 +95,7 @@ void MediumCrossing::scatter(float free_path, MediumEvent& event) {
     event.wi = sample->wi;
     event.phase_pdf = sample->pdf;
     note_medium(path_);
-    if (survives_dark(walk_.ray.origin, at.position)) event.kind = MediumEvent::Kind::scattered;
+    if (survives_dark(walk_.ray.origin, at.position)) event.kind = MediumEvent::Kind::direction_sampled;
 }
 
 /// Russian roulette of a path that is scattered `at` a point, by its throughput and by the illuminance there relative
@@ -116,21 +117,21 @@ void MediumCrossing::cross_grid(float t, bool last, MediumEvent& event) {
     const GridRay ray = path_.scene.grid_ray(walk_.media.interior, walk_.ray);
     const RayRandom random(walk_.ray.origin, walk_.ray.direction, path_.sampler.next_1d());
     const double begin = double(walk_.ray.t_min), end = double(t);
-    if (here_.scattering.is_black() && here_.emission.is_black()) {
-        walk_.throughput *= ratio_tracking(ray, here_.extinction, begin, end, random);
+    if (coefficients_.scattering.is_black() && coefficients_.emission.is_black()) {
+        walk_.throughput *= ratio_tracking(ray, coefficients_.extinction, begin, end, random);
         if (!walk_.throughput.is_black()) event.kind = MediumEvent::Kind::passed;
         return;
     }
-    const Tracked way =
-        delta_tracking(ray, here_, walk_.media.lanes, path_.wavelengths.secondary_ended, begin, end, random);
-    if (!here_.emission.is_black()) event.emitted = walk_.throughput * way.emitted;
-    if (!take({way.weight, way.lanes})) return;
-    if (!way.scattered) {
+    const Tracked tracked =
+        delta_tracking(ray, coefficients_, walk_.media.lanes, path_.wavelengths.secondary_ended, begin, end, random);
+    if (!coefficients_.emission.is_black()) event.emitted = walk_.throughput * tracked.emitted;
+    if (!take({tracked.weight, tracked.lanes})) return;
+    if (!tracked.collided) {
         event.kind = MediumEvent::Kind::passed;
     } else if (!last) {
         note_medium(path_);
-        event.kind = MediumEvent::Kind::collided;
-        event.t = float(way.t);
+        event.kind = MediumEvent::Kind::collision;
+        event.t = float(tracked.t);
     }
 }
 

@@ -12,15 +12,15 @@ namespace dg {
 /// Result of tracing a path through a medium.
 struct MediumEvent {
     enum class Kind {
-        passed,      // reached the surface
-        scattered,   // at `t`, toward `wi`
-        collided,    // at `t`: a vertex; the caller samples light and the direction
-        ended,       // throughput 0, or ended by roulette
+        passed,              // reached the surface
+        direction_sampled,   // scattered at `t` toward `wi`; `lamp` is the light sample
+        collision,           // scatters at `t`, but the caller samples light and direction there, as at a surface
+        ended,               // throughput 0, or ended by roulette
     } kind = Kind::ended;
     float t = 0;                       // m along the ray
     Vec3f wi;
     float phase_pdf = 0;               // of wi, 1/sr
-    float odds = 1;                    // expected light samples over expected collisions
+    float light_samples_per_collision = 1;   // ratio of the expected numbers on the segment, for MIS
     Spectrum emitted{0.f};             // emission of the medium times the throughput
     LampSample lamp;                   // light sample on the segment; weight 0: none
     Spectrum lamp_throughput{0.f};
@@ -31,22 +31,23 @@ class MediumCrossing {
     /// `path` must be in a medium.
     explicit MediumCrossing(PathState& path);
 
-    /// `t`: distance to the surface, m. `last`: the path has reached its maximum depth and is not scattered.
+    /// `t`: distance to the surface, m, or infinity. `last`: the path has reached its maximum depth and is not
+    /// scattered.
     MediumEvent cross(float t, bool last);
 
   private:
-    void cross_even(float t, bool last, MediumEvent& event);
+    void cross_homogeneous(float t, bool last, MediumEvent& event);
     void scatter(float free_path, MediumEvent& event);
     void cross_grid(float t, bool last, MediumEvent& event);
-    float scattering_drawn(const Segment& way) const;
-    void sample_lamp(const Segment& way, float drawn, MediumEvent& event);
+    float scattering_fraction(const Segment& segment) const;
+    void sample_lamp(const Segment& segment, float fraction, MediumEvent& event);
     bool take(const Segment::Onward& onward);
     bool survives_dark(Vec3f from, Vec3f at);
 
     PathState& path_;
     WalkState& walk_;
     const Medium& medium_;
-    const MediumAt here_;
+    const MediumAt coefficients_;   // at the wavelengths of the path
 };
 
 }  // namespace dg

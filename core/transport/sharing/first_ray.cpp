@@ -4,29 +4,29 @@
 
 namespace dg {
 
-std::optional<float> FirstRay::share(Vec3d p, double w, float emission_pdf, float cosine) const {
+std::optional<float> FirstRay::weight(Vec3d p, double w, float emission_pdf, float cosine) const {
     if (!(emission_pdf > 0)) return std::nullopt;
-    const double light = sharing_.of_light(emission_pdf, lens_pdf(p, w), cosine);
+    const double light = sharing_.direct_density(emission_pdf, lens_pdf(p, w), cosine);
     if (!(light > 0)) return std::nullopt;
-    return sharing_.camera_share(light, camera_density());
+    return sharing_.camera_weight(light, camera_density());
 }
 
-std::optional<float> FirstRay::share_of_triangle(const SurfaceHit& hit) const {
+std::optional<float> FirstRay::weight_of_triangle(const SurfaceHit& hit) const {
     const float pdf = sharing_.emission().pdf_triangle(hit.instance, hit.primitive, hit.time);
-    return share(to_double(hit.position), 1, pdf, std::abs(dot(hit.ng, hit.wo)));
+    return weight(to_double(hit.position), 1, pdf, std::abs(dot(hit.ng, hit.wo)));
 }
 
-std::optional<float> FirstRay::share_of_sphere(const LightSet& lights, std::uint32_t sphere,
+std::optional<float> FirstRay::weight_of_sphere(const LightSet& lights, std::uint32_t sphere,
                                                const SurfaceHit& hit) const {
     const float pdf =
         sharing_.emission().pdf_sphere(sphere, hit.position, hit.time, viewpoint(hit.time));
     const Vec3f center = lights.sphere_at(sphere, hit.time).shape.center;
-    return share(to_double(hit.position), 1, pdf,
+    return weight(to_double(hit.position), 1, pdf,
                  std::abs(dot(normalize(hit.position - center), hit.wo)));
 }
 
-std::optional<float> FirstRay::share_of_sky(Vec3f direction) const {
-    return share(to_double(direction), 0, sharing_.emission().pdf_sky(direction, time_), 1);
+std::optional<float> FirstRay::weight_of_sky(Vec3f direction) const {
+    return weight(to_double(direction), 0, sharing_.emission().pdf_sky(direction, time_), 1);
 }
 
 }  // namespace dg

@@ -15,9 +15,9 @@ class FirstRay {
     const LightSharing& sharing() const { return sharing_; }
 
     /// MIS weight of the camera path, in [0, 1]. Empty: light paths cannot find the emitter.
-    std::optional<float> share_of_triangle(const SurfaceHit& hit) const;
-    std::optional<float> share_of_sphere(const LightSet& lights, std::uint32_t sphere, const SurfaceHit& hit) const;
-    std::optional<float> share_of_sky(Vec3f direction) const;
+    std::optional<float> weight_of_triangle(const SurfaceHit& hit) const;
+    std::optional<float> weight_of_sphere(const LightSet& lights, std::uint32_t sphere, const SurfaceHit& hit) const;
+    std::optional<float> weight_of_sky(Vec3f direction) const;
 
     /// Density of light paths toward the lens from a point (m, world) on the ray, per sr at the point, divided by the
     /// camera's density of the ray.
@@ -37,7 +37,7 @@ class FirstRay {
     /// Position of the lens at a time.
     virtual Viewpoint viewpoint(float time) const = 0;
 
-    std::optional<float> share(Vec3d p, double w, float emission_pdf, float cosine) const;
+    std::optional<float> weight(Vec3d p, double w, float emission_pdf, float cosine) const;
 
     const LightSharing& sharing_;
     float time_;

@@ -40,13 +40,13 @@ TEST_CASE("an emitter's light is shared by the densities of both techniques") {
     const LightSharing both = sharing(Technique::both);
     const Known ray(both, 0.7f, 5);
     const double light = 2 * 0.5 * point * 0.7f;   // M x scale x densities, under a cosine of 1
-    CHECK(*ray.share_of_sphere(scene->lights(), 0, hit) == doctest::Approx(5 / (5 + light)));
-    if (sky > 0) CHECK(*ray.share_of_sky({0, 0, -1}) == doctest::Approx(5 / (5 + 3 * 0.7f * sky)));
+    CHECK(*ray.weight_of_sphere(scene->lights(), 0, hit) == doctest::Approx(5 / (5 + light)));
+    if (sky > 0) CHECK(*ray.weight_of_sky({0, 0, -1}) == doctest::Approx(5 / (5 + 3 * 0.7f * sky)));
     CHECK(ray.lens_over_camera({1, 2, 3}) == doctest::Approx(0.7 / 5));
-    CHECK_FALSE(Known(both, 0, 5).share_of_sphere(scene->lights(), 0, hit).has_value());
+    CHECK_FALSE(Known(both, 0, 5).weight_of_sphere(scene->lights(), 0, hit).has_value());
     const LightSharing camera = sharing(Technique::camera), other = sharing(Technique::light);
-    CHECK(*Known(camera, 0.7f, 5).share_of_sphere(scene->lights(), 0, hit) == 1);
-    CHECK(*Known(other, 0.7f, 5).share_of_sphere(scene->lights(), 0, hit) == 0);
+    CHECK(*Known(camera, 0.7f, 5).weight_of_sphere(scene->lights(), 0, hit) == 1);
+    CHECK(*Known(other, 0.7f, 5).weight_of_sphere(scene->lights(), 0, hit) == 0);
 }
 
 }  // namespace dg

@@ -27,19 +27,19 @@ class LightSharing {
 
     /// Density of light paths directly to the lens, from the densities of the emitter point and of the direction to the
     /// lens, and the cosine at the emitter (1 for emitters at infinity).
-    double of_light(float emission_pdf, float lens_pdf, float cosine) const {
+    double direct_density(float emission_pdf, float lens_pdf, float cosine) const {
         return plan_.m1 * scale_ * double(emission_pdf) * lens_pdf / cosine;
     }
 
     /// Density of light paths with bounces; `pdf`: density of the emitted ray, as EmissionRay::pdf.
-    double of_bounced(double pdf) const { return plan_.m2 * scale_ * pdf; }
+    double bounced_density(double pdf) const { return plan_.m2 * scale_ * pdf; }
 
     /// Divisor of a light path's contribution, for densities of light and camera paths.
     double divisor(double light, double camera) const {
         return technique_ == Technique::both ? light + camera : light;
     }
     /// MIS weight of a camera path's contribution.
-    float camera_share(double light, double camera) const {
+    float camera_weight(double light, double camera) const {
         if (technique_ == Technique::both) return float(camera / (light + camera));
         return technique_ == Technique::camera ? 1.f : 0.f;
     }

@@ -26,17 +26,17 @@ PathMis::Vertex::Vertex(const Scene& scene, const Material& material, const Surf
       point_(is_point(hit)),
       hit_(at_point(hit)) {}
 
-PathVertex& PathMis::Vertex::both() {
-    if (!both_)
-        both_.emplace(material_, scene_.textures(), hit_, wavelengths_, point_ ? &shaded_ : nullptr);
-    return *both_;
+PathVertex& PathMis::Vertex::bidirectional() {
+    if (!bidirectional_)
+        bidirectional_.emplace(material_, scene_.textures(), hit_, wavelengths_, point_ ? &shaded_ : nullptr);
+    return *bidirectional_;
 }
 
 /// p'_back of the vertex; p'_lens / D at the first vertex.
 double PathMis::back(Vertex& vertex, const Scattering& s) const {
     const SurfaceHit& hit = vertex.hit_;
     const double pdf = vertices_ > 0 ? s.light_pdf : first_.lens_over_camera(hit.position);
-    return odds_ * pdf / std::abs(double(dot(hit.ng, hit.wo)));
+    return light_camera_ratio_ * pdf / std::abs(double(dot(hit.ng, hit.wo)));
 }
 
 bool PathMis::cross(VolumeState& volume, Vertex& vertex, Vec3f wi) {
@@ -50,11 +50,11 @@ bool PathMis::cross(VolumeState& volume, Vertex& vertex, Vec3f wi) {
         vertex.shaded_);
 }
 
-float PathMis::of_sample(const Scene& scene, Vertex& vertex, const LightSample& light,
+float PathMis::weight_of_sample(const Scene& scene, Vertex& vertex, const LightSample& light,
                              const Wavelengths& wavelengths) const {
     if (vertices_ < 1) return 1;
     const SurfaceHit& hit = vertex.hit_;
-    const Scattering s = vertex.both().scattering(hit.wo, light.wi);
+    const Scattering s = vertex.bidirectional().scattering(hit.wo, light.wi);
     if (s.hero_only || s.f_cos.is_black()) return 1;
     VolumeState volume = volume_;
     if (!cross(volume, vertex, light.wi)) return 1;
@@ -67,20 +67,21 @@ float PathMis::of_sample(const Scene& scene, Vertex& vertex, const LightSample& 
     const float emission = first_.sharing().emission_rays().pdf(light.light, hit.position, light.wi,
                                                                light.distance, hit.time);
     const double found = double(light.pdf) + (light.delta ? 0 : s.camera_pdf);
-    const double ratio = first_.sharing().of_bounced(emission) * back(vertex, s) *
+    const double ratio = first_.sharing().bounced_density(emission) * back(vertex, s) *
                          std::abs(double(dot(hit.ng, light.wi))) / found;
-    return ratio > 0 ? first_.sharing().camera_share(ratio, 1) : 1;
+    return ratio > 0 ? first_.sharing().camera_weight(ratio, 1) : 1;
 }
 
-float PathMis::of_emitter(std::int64_t light, Vec3f from, Vec3f direction, float distance,
+float PathMis::weight_of_emitter(std::int64_t light, Vec3f from, Vec3f direction, float distance,
                               float time, float light_over_bsdf) const {
     if (!open_ || vertices_ < 2) return 1;
     const bool infinite = light == LightSet::kEnvironment;
     if (infinite && volume_.where != VolumeState::Where::air) return 1;
     const float emission = first_.sharing().emission_rays().pdf(std::int32_t(light), from, direction,
                                                                distance, time);
-    const double ratio = first_.sharing().of_bounced(emission) * odds_ / (1 + double(light_over_bsdf));
-    return ratio > 0 ? first_.sharing().camera_share(ratio, 1) : 1;
+    const double ratio =
+        first_.sharing().bounced_density(emission) * light_camera_ratio_ / (1 + double(light_over_bsdf));
+    return ratio > 0 ? first_.sharing().camera_weight(ratio, 1) : 1;
 }
 
 void PathMis::leave(Vertex& vertex, const BsdfSample& sample) {
@@ -88,17 +89,17 @@ void PathMis::leave(Vertex& vertex, const BsdfSample& sample) {
     open_ = !sample.hero_only && cross(volume_, vertex, sample.wi);
     if (!open_) return;
     if (sample.specular) {
-        open_ = vertices_++ > 0 && vertex.both().reversible(hit.wo, sample.wi);
+        open_ = vertices_++ > 0 && vertex.bidirectional().reversible(hit.wo, sample.wi);
         return;
     }
     Scattering s;
     if (vertices_ == 0 && vertex.point_)
         s.camera_pdf = sample.pdf;   // light_pdf is not needed
     else
-        s = vertex.both().scattering(hit.wo, sample.wi);
-    odds_ = back(vertex, s) * std::abs(double(dot(hit.ng, sample.wi))) / s.camera_pdf;
+        s = vertex.bidirectional().scattering(hit.wo, sample.wi);
+    light_camera_ratio_ = back(vertex, s) * std::abs(double(dot(hit.ng, sample.wi))) / s.camera_pdf;
     ++vertices_;
-    open_ = odds_ > 0 && std::isfinite(odds_);
+    open_ = light_camera_ratio_ > 0 && std::isfinite(light_camera_ratio_);
 }
 
 }  // namespace dg

@@ -35,22 +35,22 @@ class PathMis {
 
       private:
         friend class PathMis;
-        PathVertex& both();   // created on first use
+        PathVertex& bidirectional();   // created on first use
         const Scene& scene_;
         const Material& material_;
         const Wavelengths& wavelengths_;
         const Bsdf& shaded_;
         bool point_;      // the hit has no footprint, so shaded_ serves for both directions
         SurfaceHit hit_;
-        std::optional<PathVertex> both_;
+        std::optional<PathVertex> bidirectional_;
     };
 
     /// MIS weight of the camera path for a light sample of next-event estimation.
-    float of_sample(const Scene& scene, Vertex& vertex, const LightSample& light,
+    float weight_of_sample(const Scene& scene, Vertex& vertex, const LightSample& light,
                     const Wavelengths& wavelengths) const;
     /// MIS weight of the camera path for an emitter hit `distance` m after its last vertex `from`. `light_over_bsdf`:
     /// density of next-event estimation over the BSDF density.
-    float of_emitter(std::int64_t light, Vec3f from, Vec3f direction, float distance, float time,
+    float weight_of_emitter(std::int64_t light, Vec3f from, Vec3f direction, float distance, float time,
                      float light_over_bsdf) const;
     /// Updates the ratio when the path leaves the vertex.
     void leave(Vertex& vertex, const BsdfSample& sample);
@@ -60,8 +60,8 @@ class PathMis {
     static bool cross(VolumeState& volume, Vertex& vertex, Vec3f wi);
     const FirstRay& first_;
     bool open_;
-    int vertices_ = 0;         // number of vertices that the path has left
-    double odds_ = 1;          // the formula's factors so far, beginning with p'_lens(x_1) / D
+    int vertices_ = 0;                // number of vertices that the path has left
+    double light_camera_ratio_ = 1;   // the formula's factors so far, beginning with p'_lens(x_1) / D
     VolumeState volume_;
 };
 

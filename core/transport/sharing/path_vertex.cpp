@@ -38,9 +38,9 @@ PathVertex::PathVertex(const Material& material, const std::vector<Texture>& tex
       textures_(textures),
       wavelengths_(wavelengths),
       hit_(hit),
-      even_(hit.ns == hit.ng && !has_normal_map(material) && !is_one_sided(material)),
-      from_(hit.wo),
-      here_(shaded ? *shaded : shade_from(hit.wo)) {}
+      view_independent_(hit.ns == hit.ng && !has_normal_map(material) && !is_one_sided(material)),
+      view_(hit.wo),
+      bsdf_(shaded ? *shaded : shade_from(hit.wo)) {}
 
 Bsdf PathVertex::shade_from(Vec3f w) const {
     SurfaceHit hit = hit_;
@@ -50,8 +50,8 @@ Bsdf PathVertex::shade_from(Vec3f w) const {
 }
 
 const Bsdf& PathVertex::seen_from(Vec3f w) {
-    if (even_ || w == from_) return here_;
-    return there_.emplace(shade_from(w));
+    if (view_independent_ || w == view_) return bsdf_;
+    return other_bsdf_.emplace(shade_from(w));
 }
 
 Scattering PathVertex::scattering(Vec3f to_camera, Vec3f to_light) {
@@ -66,7 +66,7 @@ Scattering PathVertex::scattering(Vec3f to_camera, Vec3f to_light) {
 }
 
 bool PathVertex::reversible(Vec3f a, Vec3f b) {
-    if (even_) return true;
+    if (view_independent_) return true;
     const Bsdf first = seen_from(a);
     return same_normals(first, seen_from(b));
 }

@@ -52,10 +52,10 @@ class PathVertex {
     const std::vector<Texture>& textures_;
     const Wavelengths& wavelengths_;
     SurfaceHit hit_;
-    bool even_;      // shading does not depend on the view direction
-    Vec3f from_;     // view direction of here_
-    Bsdf here_;
-    std::optional<Bsdf> there_;
+    bool view_independent_;   // shading does not depend on the view direction
+    Vec3f view_;              // view direction of bsdf_
+    Bsdf bsdf_;
+    std::optional<Bsdf> other_bsdf_;
 };
 
 }  // namespace dg

@@ -18,9 +18,10 @@ struct PathState {
     Sight sight = {};
     std::uint64_t rays = 0;
 
-    /// Adds this branch's share of the camera ray to the coverage of an object, or subtracts it (sign -1).
+    /// Adds this branch's share of the camera ray to the coverage of an object, or subtracts it (sign -1). No effect
+    /// once the path has been scattered.
     void cover(std::uint32_t object, float sign) {
-        if (walk.open) sight.covers.add(object, sign * walk.share());
+        if (walk.unscattered) sight.covers.add(object, sign * walk.share());
     }
 };
 

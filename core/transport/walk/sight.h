@@ -8,12 +8,13 @@
 
 namespace dg {
 
-/// Radiance as a sum of two parts. `shared`: light that any wavelength of the path could have found as the hero.
-/// `hero`: light behind a dispersive interface, where only the hero continues (lane 0, already scaled by four; see
-/// hero_alone()).
+/// Radiance as a sum of two parts. `any_hero`: light that any wavelength of the path could have found as the hero.
+/// `hero`: light behind a dispersive interface, where only the path's own hero continues (lane 0, already scaled by
+/// four; see hero_alone()). Reprojection through a dispersive lens (render/dispersion.h) weighs the two parts
+/// differently.
 struct Radiance {
-    Spectrum shared{0.f}, hero{0.f};
-    Spectrum sum() const { return shared + hero; }
+    Spectrum any_hero{0.f}, hero{0.f};
+    Spectrum sum() const { return any_hero + hero; }
 };
 
 /// The first surface along a camera ray, and the denoiser's guides: albedo and normal. Mirrors and smooth glass show
@@ -23,7 +24,7 @@ struct FirstHit {
     bool found = false;
     Vec3f position, normal, albedo;   // m, world; unit
     std::uint32_t instance = 0;
-    Vec3f seen_albedo, seen_normal;   // of the first rough surface, times the throughput
+    Vec3f seen_albedo, seen_normal;   // guides: sums over branches, of the first rough surface times the throughput
 };
 
 /// Coverage of an object: the fraction of a ray's light that it blocks from the scene behind it.
@@ -64,7 +65,8 @@ class Covers {
 
 /// Radiance and coverage of a camera ray. In a scene with catchers (catcher/two_worlds.h) `light` is the radiance of
 /// objects; `with` and `without` are the radiance of catchers and background, in the scene with the objects and in the
-/// scene without them. Both are for the whole ray, also where an object covers it.
+/// scene without them. `light` + `with` is the radiance of the full scene. `without` includes catchers behind an object
+/// that covers them, as if it were absent.
 struct Sight {
     Radiance light, with, without;
     Covers covers;

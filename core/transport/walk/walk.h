@@ -1,12 +1,12 @@
 // walk.h -- state of a camera path's random walk. Branching a path saves and restores all of it.
 //
-// A window is a surface that does not deflect the ray: a clear sheet or the boundary of a medium. Windows are not
-// counted as vertices.
+// A window is a surface that does not deflect the ray: a clear sheet or the boundary of a medium. The path passes it
+// with a new ray, but windows are not counted as vertices.
 #pragma once
 #include "geometry/ray.h"
 #include "material/bsdf_sample.h"
 #include "spectrum/sampled_spectrum.h"
-#include "transport/sharing/shared_light.h"
+#include "transport/sharing/light_path_mis.h"
 
 namespace dg {
 
@@ -14,11 +14,12 @@ namespace dg {
 struct LastVertex {
     Vec3f position;       // m
     float bsdf_pdf = 0;   // density of the ray's direction under BSDF sampling, 1/sr
-    int tries = 1;        // candidates of light sampling at the vertex (light_pick.h)
+    int candidates = 1;   // light samples drawn at the vertex, for one that is traced (light_pick.h)
     bool delta = true;    // the lens or a delta lobe: light sampling cannot find emitters along the ray
-    float windows = 0;    // m from the vertex to the ray's origin, through windows; 0: the ray starts at the vertex
+    float window_distance = 0;   // m from the vertex to the ray's origin, if the ray starts at a window behind it; else 0
 
-    bool is_ray_origin() const { return windows == 0; }
+    /// Whether the ray starts at the vertex, not at a window behind it.
+    bool no_window_since() const { return window_distance == 0; }
 };
 
 /// State of a path inside volumes and participating media.
@@ -34,16 +35,16 @@ struct WalkState {
     float eta_squared = 1;     // undoes the radiance scaling of refraction for Russian roulette
     LastVertex last;
     MediaState media;
-    SharedLight sharing;
+    LightPathMis light_mis;
     int splits = 0;            // interfaces at which the path followed both lobes
-    bool in_view = true;       // only specular bounces since the camera
-    bool open = true;          // unscattered since the camera: surfaces on the ray cover the background
+    bool in_view = true;       // only windows and specular bounces since the camera
+    bool unscattered = true;   // only windows since the camera, or glass with see_through: surfaces cover the background
     bool hero_only = false;    // only the hero wavelength is left, behind a dispersive interface
     bool guided = false;       // the denoiser's guides have been recorded at a rough surface
 
-    /// This branch's share of the camera ray's light.
+    /// This branch's share of the camera ray's light, without the eta^2 scaling of radiance.
     float share() const { return throughput.average() * eta_squared; }
-    /// The largest throughput of any wavelength.
+    /// The largest throughput of any wavelength, without that scaling.
     float strength() const { return throughput.max() * eta_squared; }
 };
 
