@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ import daguerre as dg
 from daguerre import calibration
 from daguerre.calibration import Calibration
 from daguerre.errors import DaguerreError, InputError, UsageError
+from daguerre.files.reading import shown
 
 cv2 = pytest.importorskip("cv2")
 
@@ -270,6 +272,12 @@ def test_bad_pictures_of_colmap(tmp_path: Path) -> None:
         calibration.read_all(tmp_path)
     with pytest.raises(InputError, match="no such file"):
         calibration.read_all(tmp_path / "cameras" / "cameras.txt")
+
+
+def test_a_missing_folder_of_colmap_is_named(tmp_path: Path) -> None:
+    for path in (tmp_path / "nope", tmp_path / "nope" / "sparse"):
+        with pytest.raises(InputError, match=f"^{re.escape(shown(path))}: no such folder; wanted"):
+            dg.Camera.from_colmap(path)
 
 
 def transforms(**more: Any) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from daguerre.argument_checks import guarded
 from daguerre.camera.projection import Projection
 from daguerre.checks import short
 from daguerre.errors import InputError, UsageError, suggest
-from daguerre.files.reading import exists, is_folder, not_utf8, opened, reading
+from daguerre.files.reading import exists, is_folder, not_utf8, opened, reading, shown
 
 from . import colmap_bin
 from .calibration import FLIP, Calibration, projection
@@ -29,6 +29,7 @@ from .source import turned
 
 #: Largest file; most of ``images.txt`` are points, which are skipped.
 MAX_BYTES = 1 << 30
+_FILES = ("cameras.txt", "images.txt", "cameras.bin", "images.bin")
 #: Model -> Daguerre's, number of focal lengths, and number of parameters beside the centre.
 MODELS = {
     "SIMPLE_PINHOLE": ("rectilinear", 1, 0),
@@ -49,9 +50,7 @@ def is_colmap(source: object) -> bool:
     if not isinstance(source, str | os.PathLike):
         return False
     path = Path(source)
-    return is_folder(path) or path.name in (
-        *("cameras.txt", "images.txt", "cameras.bin", "images.bin"),
-    )
+    return is_folder(path) or path.name in _FILES
 
 
 @guarded
@@ -59,13 +58,15 @@ def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[
     """Reads the pictures of a model by name; without a file of images the cameras by number.
 
     Args:
-        source: Folder of the model, with ``cameras.txt`` or else ``cameras.bin``.
+        source: Folder of the model, with ``cameras.txt`` or else ``cameras.bin``; or a file in it.
         unit_m: Length of the model's unit, m, which COLMAP does not know.
 
     Raises:
         InputError: A file cannot be used; the message has file and line.
     """
     path = Path(source)
+    if path.name not in _FILES and not exists(path):
+        raise InputError(f"{shown(path)}: no such folder; wanted the folder of a COLMAP model")
     folder = path if os.path.isdir(path) else path.parent  # noqa: PTH112
     suffix = next((s for s in (".txt", ".bin") if exists(folder / f"cameras{s}")), None)
     if suffix is None:
