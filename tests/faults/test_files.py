@@ -310,5 +310,5 @@ def test_a_checkpoint_of_another_build_is_refused_by_name(
 def test_an_endless_file_name_is_a_short_error(tmp_path: Path) -> None:
     endless = tmp_path / ("[" * 6000 + ".json")
     with pytest.raises(dg.InputError, match="cannot read: File name too long") as caught:
-        read_json_file(endless, "sensor", "any", (), lambda root: root)
+        read_json_file(endless, "any", (), lambda root: root)
     assert len(str(caught.value)) < 1200

@@ -17,13 +17,12 @@ MAX_BYTES = 16_000_000
 
 
 def read_json_file(
-    path: str | Path, what: str, schema: str, members: Collection[str], make: Callable[[Item], Made]
+    path: str | Path, schema: str, members: Collection[str], make: Callable[[Item], Made]
 ) -> Made:
     """Reads a library file and makes its object.
 
     Args:
         path: The file.
-        what: Kind of object, for messages.
         schema: Schema that the file must name.
         members: Members that its JSON object may have.
         make: Function that makes the result from the JSON object.

@@ -65,7 +65,7 @@ def most_unpacked(packed: int) -> int:
 
 
 class Inflated:
-    """A zlib stream, unpacked bit by bit.
+    """A zlib stream, unpacked as far as it is read.
 
     Args:
         data: The stream, and perhaps more.

@@ -27,8 +27,8 @@ FloatArray = NDArray[np.float64]
 #: Maximum size of a file.
 MAX_BYTES = 16 << 20
 _TYPES = {1: "C", 2: "B", 3: "A"}
-#: Year from which on the second factor of the ballast is none: then it is reserved, and from 2019
-#: on the kind of the test.
+#: First standard without a ballast-lamp photometric factor. The number in its place is reserved,
+#: and from 2019 on it is the file generation type.
 _NO_LAMP_FACTOR = 2002
 
 

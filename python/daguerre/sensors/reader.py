@@ -32,7 +32,7 @@ def read(path: str | Path) -> Sensor:
     Raises:
         InputError: The file cannot be used; the message has the file and JSON path.
     """
-    return read_json_file(path, "sensor", SCHEMA, MEMBERS, _sensor)
+    return read_json_file(path, SCHEMA, MEMBERS, _sensor)
 
 
 def read_text(text: str, source: str) -> Sensor:

@@ -28,7 +28,7 @@ def read(path: str | Path) -> Stock:
     Raises:
         InputError: The file cannot be used; the message has the file and JSON path.
     """
-    return read_json_file(path, "stock", SCHEMA, MEMBERS, _stock)
+    return read_json_file(path, SCHEMA, MEMBERS, _stock)
 
 
 def _stock(root: Item) -> Stock:

@@ -172,7 +172,7 @@ def test_settings_are_told(tmp_path: Path) -> None:
     assert (found.resolution, found.crop, found.spp) == ((60, 40), (10, 0, 30, 40), 9)
     assert (found.filter, found.max_depth) == ("gaussian:1.2", 4)
     assert scene.warnings == [
-        "the file's film and sampler are set by: --crop left=10,top=0,right=30,bottom=40 --spp 9 "
+        "flags for the file's film and sampler: --crop left=10,top=0,right=30,bottom=40 --spp 9 "
         "--filter gaussian:1.2 --max-depth 4"
     ]
     assert list(scene.cameras) == ["eye", "other"]
@@ -244,7 +244,7 @@ def test_a_mirrored_camera_sees_the_mirror_image_as_in_mitsuba(tmp_path: Path) -
         '<emitter type="directional"><vector name="direction" x="2" y="-1" z="-1"/></emitter>',
     )
     assert read_all(path)[0].warnings == [
-        "the file's film and sampler are set by: --spp 16 --filter box:0.5 --max-depth 1"
+        "flags for the file's film and sampler: --spp 16 --filter box:0.5 --max-depth 1"
     ]
     same_blocks(ours(path, 64), theirs(path, 64), 0.05)
 

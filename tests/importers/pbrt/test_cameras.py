@@ -259,7 +259,7 @@ def test_a_note_tells_the_flag_of_the_pixel_filter(tmp_path: Path, filter_: str,
     scene = read(tmp_path, 'Shape "sphere"', f"PixelFilter {filter_}")
     told = "pbrt's pixel filter is left out: --filter chooses one"
     if flag:
-        told = f"the file's pixel filter is set by: --filter {flag}"
+        told = f"flags for the file's pixel filter: --filter {flag}"
         assert check_filter(flag) == flag
     assert f"{told} (1 use)" in scene.warnings
 
@@ -267,6 +267,6 @@ def test_a_note_tells_the_flag_of_the_pixel_filter(tmp_path: Path, filter_: str,
 def test_a_gaussian_of_old_files_has_its_alpha(tmp_path: Path) -> None:
     options = 'PixelFilter "gaussian" "float alpha" 2 "float xradius" 1.5 "float yradius" 1.5'
     scene = read(tmp_path, 'Shape "sphere" WorldEnd', options)
-    assert "the file's pixel filter is set by: --filter gaussian:1.5 (1 use)" in scene.warnings
+    assert "flags for the file's pixel filter: --filter gaussian:1.5 (1 use)" in scene.warnings
     with pytest.raises(InputError, match="xradius: wanted"):
         read(tmp_path, 'Shape "sphere"', 'PixelFilter "triangle" "float xradius" -1')

@@ -30,14 +30,16 @@ def write_exposure(output: Output) -> None:
     shutters = ("exposure_time", "shutter_time", "shutter_angle")
     stops = ("exposure_f_stop", "f_stop", "t_stop", "aperture_diameter", "focal_length")
     output.follow("exposure:iso", "float", attrgetter("iso"), "iso")
-    output.follow("exposure:time", "float", _time, *shutters)
+    output.follow("exposure:time", "float", _exposure_time, *shutters)
     output.follow("exposure:fStop", "float", _stop, *stops)
     output.follow("exposure:responsivity", "float", _responsivity, "responsivity")
 
 
-def _time(camera: Camera) -> float:
-    shutter_s = shutter.shutter_time(camera)
-    return shutter_s if camera.exposure_time is None else camera.exposure_time
+def _exposure_time(camera: Camera) -> float:
+    """Time of the brightness, s, which is the shutter's unless it is set."""
+    if camera.exposure_time is not None:
+        return camera.exposure_time
+    return shutter.shutter_time(camera)
 
 
 def _stop(camera: Camera) -> float:

@@ -1,1 +1,1 @@
-"""Reads and writes glTF 2.0 scenes; ``reader`` joins nodes, meshes, materials and cameras."""
+"""Reads glTF 2.0 scenes; ``reader`` joins nodes, meshes, materials and cameras."""

@@ -58,10 +58,10 @@ class Materials:
         self._known: dict[Any, int] = {}
 
     def index(
-        self, bsdf: Node | None, chart: Chart, glow: Glow, sides: Sides, *, black: bool = False
+        self, bsdf: Node | None, chart: Chart, glow: Glow, sides: Sides, *, emits: bool = False
     ) -> int:
-        """Index of the material of a shape; ``black``: a shape without a material is black."""
-        usual = _BLACK if black else _GREY
+        """Index of the material of a shape; without a BSDF it is grey, or black if it ``emits``."""
+        usual = _BLACK if emits else _GREY
         look = usual if bsdf is None else self.look(bsdf)
         return self._index(look, chart, glow, sides)
 

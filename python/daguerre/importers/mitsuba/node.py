@@ -244,13 +244,13 @@ def unread(root: Node, notes: Notes) -> None:
                         f"{node.kind} {short(node.plugin)}: a reference to "
                         f"{_named(value)} is not supported"
                     )
-                _settle(item)
+                _mark_noted(item)
                 waiting.append(value)
             elif isinstance(value, Node) and not value.entry.noted:
                 leave_out(value, notes, f"{_named(value)} is unused and left out")
-                _settle(item)
+                _mark_noted(item)
             elif isinstance(value, Node):
-                _settle(item)
+                _mark_noted(item)
             elif not (item.entry.used or item.entry.noted):
                 name = short(item.name)
                 notes.add(f"{node.kind} {short(node.plugin)}: {name} is not supported")
@@ -258,8 +258,8 @@ def unread(root: Node, notes: Notes) -> None:
                     entry.noted = True
 
 
-def _settle(item: Property) -> None:
-    """Marks an unused reference as noted."""
+def _mark_noted(item: Property) -> None:
+    """Marks an unused reference as noted, so that it is not noted again."""
     item.entry.noted = item.entry.noted or not item.entry.used
 
 

@@ -20,7 +20,7 @@ from .materials import Glow, Materials, Sides
 from .media import Media
 from .mesh_files import FILES, MeshFiles
 from .node import Node, leave_out
-from .shapes import inward, solid_of
+from .shapes import inward, primitive_mesh
 from .spectra import emitted_rgb
 from .textures import Textures
 
@@ -44,7 +44,7 @@ class Placing:
         self._materials, self._media, self._textures = materials, media, textures
         self._files = MeshFiles(context)
         self._meshes: dict[tuple[int, str], tuple[int, Matrix] | None] = {}
-        self._solids: dict[tuple[str, bool], int] = {}
+        self._primitives: dict[tuple[str, bool], int] = {}
         self._names: dict[str, int] = {}
 
     def add(self, node: Node) -> None:
@@ -120,17 +120,17 @@ class Placing:
         if node.plugin in FILES:
             found = self._files.mesh(node, attribute)
             return None if found is None else (found, np.eye(4))
-        solid = solid_of(node)
-        if solid is None:
+        primitive = primitive_mesh(node)
+        if primitive is None:
             leave_out(node, self._notes, f"a shape {node.plugin[:40]!r} is left out")
             return None
         key = (node.plugin, inward(node))
-        if key not in self._solids:
-            mesh = solid.mesh
-            self._solids[key] = self._scene.add_mesh(
+        if key not in self._primitives:
+            mesh = primitive.mesh
+            self._primitives[key] = self._scene.add_mesh(
                 mesh.positions, mesh.triangles, mesh.normals, mesh.uv, name=node.plugin
             )
-        return self._solids[key], solid.inner
+        return self._primitives[key], primitive.inner
 
     def _named(self, node: Node, place: Matrix) -> str:
         """Adds a node to the scene; returns its name."""
@@ -151,7 +151,7 @@ class Placing:
         emitter = node.nested_one("emitter")
         glow = Glow() if emitter is None else self._glow(emitter)
         sides = Sides(self._side(node, "interior", local), self._side(node, "exterior", local))
-        return self._materials.index(bsdf, chart, glow, sides, black=emitter is not None)
+        return self._materials.index(bsdf, chart, glow, sides, emits=emitter is not None)
 
     def _side(self, node: Node, name: str, local: Matrix) -> Medium | None:
         found = node.find(name)

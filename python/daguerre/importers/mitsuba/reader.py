@@ -122,7 +122,7 @@ class _MitsubaReader:
         return settings
 
     def _cameras(self, root: Node) -> dict[str, Settings]:
-        """Adds cameras; the flags that repeat the settings of the first are a note."""
+        """Adds cameras; notes the flags that render with the film and sampler of the first."""
         depth = depth_of(root, self._notes)
         made: dict[str, Settings] = {}
         for i, (_, node) in enumerate(root.objects("sensor")):
@@ -135,7 +135,7 @@ class _MitsubaReader:
             self._camera(node, made[name], name)
         if made:
             first = next(iter(made.values()))
-            self._scene.note(f"the file's film and sampler are set by: {first.flags()}")
+            self._scene.note(f"flags for the file's film and sampler: {first.flags()}")
         return made
 
     def _camera(self, node: Node, settings: Settings, name: str) -> None:

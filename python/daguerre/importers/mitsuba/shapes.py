@@ -22,20 +22,25 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Solid:
-    """A mesh, and the transform of the shape's parameters, such as centre and radius."""
+class PrimitiveMesh:
+    """Mesh of a sphere, rectangle, disk, cylinder or cube.
+
+    Attributes:
+        mesh: The shape of unit size.
+        inner: Transform by the shape's parameters, such as centre and radius; ``to_world`` follows.
+    """
 
     mesh: ShapeMesh
     inner: Array
 
 
-def solid_of(node: Node) -> Solid | None:
-    """Solid of a shape; None: the plugin is none.
+def primitive_mesh(node: Node) -> PrimitiveMesh | None:
+    """Mesh of a shape that its parameters describe; None: the plugin is no such shape.
 
     Raises:
         InputError: A parameter is wrong.
     """
-    make = _SOLIDS.get(node.plugin)
+    make = _PRIMITIVES.get(node.plugin)
     if make is None:
         return None
     made = make(node)
@@ -58,24 +63,24 @@ def _unit_sphere() -> ShapeMesh:
     return _mesh(shapes.sphere())
 
 
-def _sphere(node: Node) -> Solid:
+def _sphere(node: Node) -> PrimitiveMesh:
     """Sphere; u from +x toward +y, v from +z down."""
     inner = np.diag([*[node.number("radius", 1.0, above=0)] * 3, 1.0])
     inner[:3, 3] = node.vector("center", (0, 0, 0))
-    return Solid(_unit_sphere(), inner)
+    return PrimitiveMesh(_unit_sphere(), inner)
 
 
-def _rectangle(node: Node) -> Solid:
-    return Solid(_v_up(_mesh(shapes.rectangle())), np.eye(4))
+def _rectangle(node: Node) -> PrimitiveMesh:
+    return PrimitiveMesh(_v_up(_mesh(shapes.rectangle())), np.eye(4))
 
 
-def _disk(node: Node) -> Solid:
+def _disk(node: Node) -> PrimitiveMesh:
     """Disk; u from the centre to the rim, v around."""
     mesh = _mesh(shapes.disk())
-    return Solid(replace(mesh, uv=mesh.uv[:, ::-1]), np.eye(4))
+    return PrimitiveMesh(replace(mesh, uv=mesh.uv[:, ::-1]), np.eye(4))
 
 
-def _cylinder(node: Node) -> Solid:
+def _cylinder(node: Node) -> PrimitiveMesh:
     """From p0 to p1; u around, v along."""
     begin, end = node.vector("p0", (0, 0, 0)), node.vector("p1", (0, 0, 1))
     radius = node.number("radius", 1.0, above=0)
@@ -85,16 +90,16 @@ def _cylinder(node: Node) -> Solid:
     inner = np.eye(4)
     inner[:3, :3] = frame((end - begin) / length) * (radius, radius, length)
     inner[:3, 3] = begin
-    return Solid(_v_up(_mesh(shapes.cylinder(low=0.0, high=1.0))), inner)
+    return PrimitiveMesh(_v_up(_mesh(shapes.cylinder(low=0.0, high=1.0))), inner)
 
 
-def _cube(node: Node) -> Solid:
+def _cube(node: Node) -> PrimitiveMesh:
     """Six squares, each with a whole picture."""
     corners = np.array(_CUBE, float)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     uv = SQUARE * (0.5, -0.5) + 0.5
-    return Solid(_mesh(shapes.quads(corners, normals, uv)), np.eye(4))
+    return PrimitiveMesh(_mesh(shapes.quads(corners, normals, uv)), np.eye(4))
 
 
 def _v_up(mesh: ShapeMesh) -> ShapeMesh:
@@ -111,7 +116,7 @@ _CUBE = [
     [(-1, -1, 1), (-1, 1, 1), (-1, 1, -1), (-1, -1, -1)],
     [(1, 1, -1), (1, -1, -1), (-1, -1, -1), (-1, 1, -1)],
 ]
-_SOLIDS: dict[str, Callable[[Node], Solid]] = {
+_PRIMITIVES: dict[str, Callable[[Node], PrimitiveMesh]] = {
     "sphere": _sphere,
     "rectangle": _rectangle,
     "disk": _disk,

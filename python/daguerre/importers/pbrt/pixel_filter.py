@@ -34,7 +34,7 @@ def tell_filter(made: Made | None, version: int, ledger: Ledger) -> None:
     if made is None:
         return
     flag = _flag(made.kind, made.parameters, version)
-    sentence = f"the file's pixel filter is set by: {flag}"
+    sentence = f"flags for the file's pixel filter: {flag}"
     if flag is None:
         sentence = "pbrt's pixel filter is left out: --filter chooses one"
     ledger.note(made.place, sentence)

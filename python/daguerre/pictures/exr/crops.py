@@ -35,7 +35,7 @@ OWN = (
 
 
 def join_crops(paths: Sequence[str | os.PathLike[str]], out: str | os.PathLike[str]) -> Box:
-    """Joins crops into a picture with the same pixels, bit by bit, and the attributes they share.
+    """Joins crops into a picture with the same pixels, bit for bit, and the attributes they share.
 
     Args:
         paths: Crops of one picture (``.exr``) that fill a rectangle, without overlaps.

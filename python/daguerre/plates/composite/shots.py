@@ -1,7 +1,7 @@
 """Finds the files of a sequence of composites: plate, objects and results of each frame.
 
 The noise of added objects differs between frames and is reproducible: frame n equals a single
-composite with the seed of the sequence plus n, bit by bit.
+composite with the seed of the sequence plus n, bit for bit.
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ def read_plate_camera(path: str | os.PathLike[str]) -> PlateCamera:
         InputError: The file cannot be used; the message has the file and JSON path.
     """
     file = Path(path)
-    return read_json_file(file, "plate camera", SCHEMA, MEMBERS, lambda root: _plate(root, file))
+    return read_json_file(file, SCHEMA, MEMBERS, lambda root: _plate(root, file))
 
 
 def _plate(root: Item, file: Path) -> PlateCamera:
