@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -307,6 +308,37 @@ def test_a_camera_in_a_medium_stands_in_fog(tmp_path: Path) -> None:
     sensor = '<sensor type="perspective"><ref id="fog" name="medium"/></sensor>'
     scene = loaded(tmp_path, '<medium type="homogeneous" id="fog"/>', sensor)
     assert scene.fog is not None
+
+
+@pytest.mark.parametrize("kind", ["homogeneous", "heterogeneous"])
+@pytest.mark.parametrize(("side", "fills"), [("interior", False), ("exterior", True)])
+def test_a_medium_of_a_camera_that_a_shape_bounds_is_no_fog(
+    tmp_path: Path, kind: str, side: str, fills: bool
+) -> None:
+    grid = '<volume type="constvolume" name="sigma_t"><float name="value" value="1"/></volume>'
+    medium = f'<medium type="{kind}" id="fog">{grid if kind[1] == "e" else ""}</medium>'
+    shape = f'<shape type="sphere"><bsdf type="null"/><ref id="fog" name="{side}"/></shape>'
+    sensor = '<sensor type="perspective"><ref id="fog" name="medium"/></sensor>'
+    assert (loaded(tmp_path, medium + shape, sensor).fog is not None) is fills
+
+
+def test_light_reaches_a_camera_in_a_bounded_medium_by_beer_lambert(tmp_path: Path) -> None:
+    sensor = (
+        '<sensor type="perspective"><float name="fov" value="10"/><ref id="m" name="medium"/>'
+        '<transform name="to_world"><lookat origin="0,0,0" target="0,0,-1" up="0,1,0"/>'
+        "</transform></sensor>"
+    )
+    scene = loaded(
+        tmp_path,
+        '<shape type="sphere"><float name="radius" value="2"/><bsdf type="null"/>'
+        '<medium type="homogeneous" name="interior" id="m"><float name="sigma_t" value=".5"/>'
+        '<float name="albedo" value="0"/></medium></shape><shape type="rectangle"><transform '
+        'name="to_world"><scale value="100"/><translate z="-10"/></transform><emitter type="area">'
+        '<rgb name="radiance" value="1"/></emitter></shape>',
+        sensor,
+    )
+    frame = dg.render(scene, resolution=(8, 8), spp=16)
+    assert frame.rgb.mean() == pytest.approx(math.exp(-1), rel=0.01)
 
 
 @pytest.mark.parametrize(

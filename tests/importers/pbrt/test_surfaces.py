@@ -385,7 +385,9 @@ def test_media_are_those_of_their_names(tmp_path: Path) -> None:
     assert material.interior.lobes == ((0.3, 1.0),)
     assert material.interior.emission == pytest.approx((0.5, 1, 1.5))  # sigma_a Le
     assert material.exterior is None
-    assert scene.fog == material.interior
+    assert scene.fog is None  # a shape bounds it
+    around = read(tmp_path, 'MediumInterface "" "m" Shape "sphere"', options).fog
+    assert around == material.interior
     preset = read(
         tmp_path,
         'MakeNamedMedium "m" "string type" "homogeneous" "string preset" "Cream" '

@@ -46,6 +46,21 @@ class Media:
         self._context, self._textures, self._notes = context, textures, context.notes
         self._world = context.world
         self._known: dict[Any, Medium | None] = {}
+        self._bounded: set[int] = set()
+
+    def inside(self, node: Node, local: Matrix) -> Medium | None:
+        """Medium inside of a shape."""
+        self._bounded.add(id(node))
+        return self.medium(node, local)
+
+    def around(self, node: Node | None) -> Medium | None:
+        """Medium around a camera that fills the world; None: no medium, or shapes bound it.
+
+        A medium inside of a shape ends at the shape; where the camera is says which it sees.
+        """
+        if node is None or id(node) in self._bounded:
+            return None
+        return self.medium(node, self._world)
 
     def medium(self, node: Node | None, local: Matrix) -> Medium | None:
         """Medium of an object; ``local`` is the scene from the space of the mesh around it."""

@@ -160,7 +160,8 @@ class Placing:
         if not isinstance(found.value, Node) or found.value.kind != "medium":
             found.wrong("a medium")
         found.take()
-        return self._media.medium(found.value, local)
+        read = self._media.inside if name == "interior" else self._media.medium
+        return read(found.value, local)
 
     def _glow(self, emitter: Node) -> Glow:
         """Light from a surface."""

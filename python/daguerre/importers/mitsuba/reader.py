@@ -146,8 +146,7 @@ class _MitsubaReader:
         far = node.number("far_clip", 1e4, above=0) * context.unit_m
         if node.has("far_clip") and farthest(self._scene, camera.transform[:3, 3]) > far:
             self._notes.add("far_clip of a sensor is ignored")
-        medium = node.nested_one("medium")
-        fog = None if medium is None else self._media.medium(medium, context.world)
+        fog = self._media.around(node.nested_one("medium"))
         if fog is not None:
             self._scene.set_fog(fog)
 

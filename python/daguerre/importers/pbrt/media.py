@@ -58,6 +58,7 @@ class Media:
         self._ledger = ledger
         self._media: dict[str, Medium | None] = {}
         self._local: dict[tuple[str, bytes], Medium] = {}
+        self._bounded: set[str] = set()
 
     def named(self, name: str) -> Medium | None:
         """Medium of a name; None: the name is empty or not defined, or it is not supported."""
@@ -74,6 +75,7 @@ class Media:
             name: Name of the medium.
             shape: Directive of the shape.
         """
+        self._bounded.add(name)
         medium, world = self.named(name), shape.state.transform.start
         if medium is None or medium.density is None:
             return medium
@@ -83,6 +85,13 @@ class Media:
             local[3] = (0, 0, 0, 1)
             self._local[key] = replace(medium, density=DensityGrid(medium.density.values, local))
         return self._local[key]
+
+    def around(self, name: str) -> Medium | None:
+        """Medium around a camera that fills the world; None: no medium, or shapes bound it.
+
+        A medium inside of a shape ends at the shape; where the camera is says which it sees.
+        """
+        return None if name in self._bounded else self.named(name)
 
     def _read(self, name: str) -> Medium | None:
         made = self._made.get(name)

@@ -130,18 +130,18 @@ class _Builder:
         camera = read_camera(described, film, self._files, self._axes, self._ledger)
         if camera is not None:
             scene.add_camera("camera", camera, film_size=film.resolution)
-        self._fog()
         self._meshes.add(described.shapes, None)
         self._objects()
+        self._fog()
         self._light()
         if scene.motion:
             scene.set_clock(self._duration())
 
     def _fog(self) -> None:
-        """Fills the world with the medium of the camera."""
+        """Fills the world with the medium of the camera, unless shapes bound it."""
         camera = self._described.camera
         outside = "" if camera is None else camera.state.outside
-        medium = self._media.named(outside)
+        medium = self._media.around(outside)
         if medium is not None:
             self._scene.set_fog(medium)
 
