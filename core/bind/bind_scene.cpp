@@ -225,6 +225,13 @@ std::optional<std::tuple<float, std::uint32_t>> first_hit(const Scene& scene, co
     return std::tuple{hit->t, hit->instance};
 }
 
+std::vector<std::pair<std::uint32_t, float>> surroundings(const Scene& scene, const Place& point, float time) {
+    std::vector<std::pair<std::uint32_t, float>> found;
+    for (const auto& [instance, share] : scene.surroundings(to_float(vec(point) - scene.origin()), time))
+        found.emplace_back(instance, share);
+    return found;
+}
+
 void bind_built_scene(nb::module_& m) {
     nb::class_<Scene>(m, "Scene")
         .def_prop_ro("triangle_count", &Scene::triangle_count)
@@ -237,6 +244,9 @@ void bind_built_scene(nb::module_& m) {
                      })
         .def_prop_ro("origin", [](const Scene& s) { return std::tuple{s.origin().x, s.origin().y, s.origin().z}; },
                      "Origin of the scene's frame in the world, m. Arguments and results are in the world.")
+        .def("surroundings", &surroundings, "point"_a, "time"_a,
+             "Absorbing volumes around a point at a time (fraction of the interval): pairs of an instance and the share "
+             "of directions in which its mesh is closed.")
         .def("first_hit", &first_hit, "origin"_a, "direction"_a, "t_min"_a = 0.f,
              "Distance (m) and instance index of the nearest surface at mid-interval, beyond t_min, or None.");
 }

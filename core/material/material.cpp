@@ -286,6 +286,13 @@ bool has_normal_map(const Material& material) {
     return m && (m->normal_texture.used() || m->clearcoat.normal_texture.used());
 }
 
+bool bounds_solid(const Material& material) {
+    if (any_part(material, bounds_solid)) return true;
+    if (const auto* m = std::get_if<DielectricMaterial>(&material.kind)) return !m->thin && (m->ior != 1 || m->ior_by_wavelength);
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    return m && m->transmission > 0 && m->thickness > 0;
+}
+
 bool is_one_sided(const Material& material) {
     return !material.two_sided || any_part(material, is_one_sided);
 }

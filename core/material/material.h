@@ -113,6 +113,9 @@ Clear clearness(const Material& material);
 
 /// True if it has a normal map.
 bool has_normal_map(const Material& material);
+/// Whether closed meshes of a material, or of a part of a mixture, are refracting solids.
+bool bounds_solid(const Material& material);
+
 /// True if it, or a part of a mixture, is black from behind.
 bool is_one_sided(const Material& material);
 

@@ -29,6 +29,22 @@ struct Sample {
     Wavelengths wavelengths;
 };
 
+/// A box around all points at which camera rays begin.
+Box places_of(const Camera& camera) {
+    constexpr double kReach = 2;   // m: no lens has its front farther from the camera's position
+    constexpr int kSteps = 64;
+    const auto place_at = [&](int step) { return camera.world_from_camera.at(double(step) / kSteps).origin; };
+    Box box{place_at(0), place_at(0)};
+    double longest = 0;   // step of the camera
+    for (int i = 1; i <= kSteps; ++i) {
+        const Vec3d p = place_at(i);
+        longest = std::max(longest, length(p - place_at(i - 1)));
+        for (int k = 0; k < 3; ++k) box.min[k] = std::min(box.min[k], p[k]), box.max[k] = std::max(box.max[k], p[k]);
+    }
+    const double reach = kReach + longest;
+    return {box.min - Vec3d{reach, reach, reach}, box.max + Vec3d{reach, reach, reach}};
+}
+
 /// Draws camera samples, tile by tile.
 class CameraPass {
   public:
@@ -48,6 +64,8 @@ class CameraPass {
           density_(picture.density), drawn_(drawn), weight_(weight), cone_(cone), path_(picture.settings.path),
           instances_(std::uint32_t(picture.scene.description().instances.size())) {
         path_.plate = settings_.plate.get();
+        solids_near_ = scene_.solids_near(places_of(camera_));
+        path_.solids_near = solids_near_;
         const bool exact = std::holds_alternative<ExactLens>(camera_.lens);
         reprojected_ = exact && settings_.dispersion == Dispersion::reproject;
         end_secondary_ = exact && settings_.dispersion == Dispersion::end_secondary;
@@ -204,6 +222,7 @@ class CameraPass {
     const DrawnSamples& drawn_;
     const LightWeight& weight_;
     const PixelCone& cone_;
+    std::vector<std::uint32_t> solids_near_;
     PathSettings path_;
     std::uint32_t instances_;
     bool reprojected_, end_secondary_;   // treatment of secondary wavelengths

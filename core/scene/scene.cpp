@@ -94,6 +94,7 @@ std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
     scene->build_records(geometry);
     scene->build_lights();
     scene->measure();
+    scene->find_solids();
     return scene;
 }
 

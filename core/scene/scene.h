@@ -101,6 +101,19 @@ class Scene {
     bool has_media() const { return has_media_; }
     /// The medium at the origin of a ray, determined from its hits; for the first ray of a path.
     Interior medium_around(Ray ray) const;
+    // Refracting solids around cameras (surroundings.cpp).
+    /// Solids, by index, that may hold a point of the box at some time.
+    std::vector<std::uint32_t> solids_near(const Box& box) const;
+    /// Interior of the innermost solid or medium around the origin of a camera ray; empty: the ray begins in none of the
+    /// solids `near`.
+    std::optional<Interior> around(const Ray& ray, std::span<const std::uint32_t> near,
+                                   const Wavelengths& wavelengths) const;
+    /// A solid around a point, and the share of directions in which its mesh is closed.
+    struct Surrounding {
+        std::uint32_t instance;
+        float share;
+    };
+    std::vector<Surrounding> surroundings(Vec3f point, float time) const;
     /// The medium behind a surface of an instance that is hit inside `here`; `inside` and `bounds_volume` are from its
     /// BSDF.
     Interior beyond(const Interior& here, std::uint32_t instance, const Interior& inside, bool bounds_volume,
@@ -167,6 +180,9 @@ class Scene {
 
     struct Bounds {
         Vec3f min, max;
+        bool meets(Vec3f low, Vec3f high) const {
+            return low.x <= max.x && low.y <= max.y && low.z <= max.z && high.x >= min.x && high.y >= min.y && high.z >= min.z;
+        }
     };
     /// Bounds of the instances over all times; 0 without instances.
     Bounds bounds() const { return bounds_; }
@@ -201,6 +217,9 @@ class Scene {
                            bool entering) const;
     std::optional<RawHit> first_visible(Ray ray) const;
     void find_media();
+    void find_solids();
+    template <typename Use>
+    void leave_solids(Ray ray, const Use& use) const;
     Spectrum through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
                                float distance, const Wavelengths& wavelengths) const;
     void hold(Vec3d point);
@@ -223,6 +242,11 @@ class Scene {
     bool has_media_ = false, has_bounded_media_ = false;
     const Medium* fog_ = nullptr;
     std::vector<MediaOfInstance> media_;   // per instance; empty: no media
+    struct Solid {
+        std::uint32_t instance;
+        Bounds bounds;
+    };
+    std::vector<Solid> solids_;   // in the order of the instances
 
     SceneDescription description_;
     std::unique_ptr<Intersector> intersector_;

@@ -1,5 +1,7 @@
 // path_settings.h -- settings of a path from the camera.
 #pragma once
+#include <cstdint>
+#include <span>
 
 namespace dg {
 
@@ -21,6 +23,7 @@ struct PathSettings {
     bool see_through = false;   // smooth glass leaves alpha open along the unrefracted ray; false: it is opaque
     /// Sampling of the distance of in-scattered light (media/lamp_sampler.h); `equiangular` and `free` are for tests.
     enum class Distances { both, equiangular, free } distances = Distances::both;
+    std::span<const std::uint32_t> solids_near = {};   // solids that the camera may be inside of (Scene::solids_near)
     const PlateLight* plate = nullptr;   // photograph that lights objects; null: the materials of catchers do
 };
 

@@ -25,6 +25,7 @@ from .pixels import parse_filter
 from .plate_light import throw_plate
 from .prepare import Prepared
 from .settings import RenderSettings
+from .surroundings import open_solids, solids_around
 
 #: Reasons for not drawing requested paths.
 DARK = {
@@ -72,7 +73,12 @@ def plan_light(prepared: Prepared, piloted: Plan | None = None) -> LightPlan:
     check_light(prepared)
     core = core_settings_of(prepared)
     wanted = check_light_paths(prepared.settings.light.light_paths)
+    notes = open_solids(prepared)
     if _is_over_plate(prepared):
+        wanted = OFF
+    elif around := solids_around(prepared):
+        if wanted not in (None, OFF):
+            notes.append(f"light paths are off: the camera is inside {around[0]}")
         wanted = OFF
     if piloted is not None:
         piloted = check_light_paths(piloted, "piloted")
@@ -84,7 +90,6 @@ def plan_light(prepared: Prepared, piloted: Plan | None = None) -> LightPlan:
     shared = prepared.share(area(prepared.window)) if wanted is None else 1.0
     core.light_paths = light_paths = (plan[0] * shared, plan[1] * shared)
     core.prepare_light(prepared.core_scene, prepared.setup.core)
-    notes: list[str] = []
     paths = {name: _prepare(prepared, core, name, notes) for name in DARK}
     parts = []
     if inner := area(prepared.window):
