@@ -22,15 +22,15 @@ SCENE = dg.Scene()
 
 @pytest.fixture
 def made(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """Settings of the exact lenses that were set up; none is kept before."""
+    """Arguments of the exact lenses that were set up; none is kept before."""
     found: list[Any] = []
-    exact = setup.exact_lens
+    exact = setup._exact_lens
 
-    def noted(prescription: Any, settings: Any) -> Any:
-        found.append(settings)
-        return exact(prescription, settings)
+    def noted(*given: Any) -> Any:
+        found.append(given)
+        return exact(*given)
 
-    monkeypatch.setattr(setup, "exact_lens", noted)
+    monkeypatch.setattr(setup, "_exact_lens", noted)
     setup._glass.cache_clear()
     return found
 

@@ -113,6 +113,6 @@ def test_between_points_of_the_frame_parabolas_are_exact():
         return np.float32(3 - 0.3 * x**2 + 0.2 * x * y - 0.5 * y**2 + 0.1 * x)
 
     nodes = bowl(np.linspace(-2, 2, 7)[None, :, None], np.linspace(-1, 1, 5)[:, None, None])
-    surface = lens_light.Surface(nodes, 61, 41)
+    surface = lens_light.CubicGrid(nodes, 61, 41)
     assert surface(Rows(0, 41)) == pytest.approx(bowl(x, y), abs=1e-5)
     assert np.array_equal(surface(Rows(7, 9)), surface(Rows(0, 41))[7:9])

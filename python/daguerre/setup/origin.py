@@ -14,6 +14,8 @@ from daguerre.camera.camera import Camera
 from daguerre.camera.shutter import interval
 from daguerre.scene.far import CELL_M, FAR_M, ZERO, Place, origin_near
 
+from .pose import rigid
+
 #: Distance between neighbouring numbers from which users hear of it, m.
 COARSE_M = 0.01
 #: Distance of a camera from 0 from which users hear of it, m.
@@ -29,8 +31,7 @@ def origin_of(camera: Camera, time: float, resolution: tuple[int, int]) -> Place
         resolution: Width and height of the picture, px.
     """
     begin, end = interval(camera, time, resolution)
-    matrix = np.asarray(camera.frozen_at(0.5 * (begin + end)).transform, np.float64)
-    return origin_near(matrix[:3, 3]) if matrix.shape == (4, 4) else ZERO
+    return origin_near(rigid(camera.frozen_at(0.5 * (begin + end)).transform)[:3, 3])
 
 
 def is_near(origin: Place, position: ArrayLike) -> bool:

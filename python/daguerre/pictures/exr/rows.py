@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import os
 import struct
+import zlib
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Self
 
-import deflate
 import numpy as np
 
 from daguerre.errors import OutputError
@@ -117,5 +117,5 @@ def packed(planes: Planes, channels: Sequence[ExrChannel], compression: int) -> 
         return plain.tobytes()
     halves = np.concatenate([plain[0::2], plain[1::2]])
     halves[1:] = halves[1:] - halves[:-1] + np.uint8(128)
-    deflated = bytes(deflate.zlib_compress(halves.tobytes(), DEFLATE_LEVEL))
+    deflated = zlib.compress(halves.data, DEFLATE_LEVEL)  # libdeflate crashes without memory
     return deflated if len(deflated) < plain.nbytes else plain.tobytes()
