@@ -55,7 +55,7 @@ class Path : public PathState {
         : PathState{scene, settings, sampler, first_hit, wavelengths}, worlds_(scene) {
         walk.ray = ray;
         walk.last.position = ray.origin;
-        if (!settings.solids_near.empty() || scene.has_media()) walk.media.interior = surroundings();
+        walk.media.interior = interior_at_camera(scene, settings, walk.ray, wavelengths);
         walk.light_mis.first_ray = first;
         if (first) path_mis_.emplace(*first);
         if (path_mis_ && path_mis_->open()) walk.light_mis.path_mis = &*path_mis_;
@@ -141,12 +141,6 @@ class Path : public PathState {
     bool counts_emission(int vertex) const {
         const bool caustic = walk.last.delta && !walk.in_view;
         return (settings.visible_emitters || vertex > 0) && (settings.caustics || !caustic);
-    }
-
-    /// The solid or medium around the camera.
-    Interior surroundings() const {
-        if (const auto solid = scene.around(walk.ray, settings.solids_near, wavelengths)) return *solid;
-        return scene.has_media() ? scene.medium_around(walk.ray) : Interior{};
     }
 
     bool leave_scene(bool counts) {

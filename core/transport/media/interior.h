@@ -4,8 +4,17 @@
 #pragma once
 #include "material/bsdf_kind.h"
 #include "scene/scene.h"
+#include "transport/walk/path_settings.h"
 
 namespace dg {
+
+/// The solid or medium around the origin of a camera ray.
+inline Interior interior_at_camera(const Scene& scene, const PathSettings& settings, const Ray& ray,
+                                   const Wavelengths& wavelengths) {
+    if (!settings.solids_near.empty())
+        if (const auto solid = scene.around(ray, settings.solids_near, wavelengths)) return *solid;
+    return scene.has_media() ? scene.medium_around(ray) : Interior{};
+}
 
 /// Interior around the ray that leaves `hit` along `wi`. `here`: interior on the side from which the path arrived.
 template <Scatters B>
