@@ -62,7 +62,7 @@ def test_a_lamp_in_the_same_water_is_dimmed_by_the_water_alone() -> None:
 
 
 def test_things_in_the_water_hide_no_wall() -> None:
-    # What surrounds the camera is found through the wall that it sees.
+    # The water around the camera is found behind the wall that it sees.
     scene = tank()
     points, triangles = quad(1.0)
     scene.add_instance(scene.add_mesh(points, triangles), dg.Diffuse((1, 1, 1)), at(0, 0, -1))
