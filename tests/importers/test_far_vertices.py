@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.exporters.outgoing.placing import placements
+from daguerre.files.notes import Notes
 from daguerre.scene.far import recentered
 from daguerre.scene.framing import bounds
+from tests.support.scene.scenes import at
 
 AWAY = np.array((500000.25, 40.0, -5400000.75))
 #: Half the distance of floats 512 m from the origin of a mesh, m.
@@ -83,6 +86,15 @@ def test_bounds_are_in_the_world() -> None:
     found = bounds(scene)
     assert found is not None
     assert np.abs(found[0] - AWAY).max() < NEAR
+
+
+def test_scenes_for_other_programs_have_them_in_their_place(tmp_path: Path) -> None:
+    scene = dg.Scene()
+    scene.add_instance(scene.add_mesh(SQUARE + AWAY, [(0, 1, 2)]), dg.Diffuse(), at(5.0, 0, 0))
+    (placed,) = placements(scene, Notes())
+    matrix = placed.transforms[0]
+    points = scene.meshes[placed.mesh].positions @ matrix[:3, :3].T + matrix[:3, 3]
+    assert np.abs(points - SQUARE - AWAY - (5.0, 0, 0)).max() < NEAR
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.files.notes import Notes
-from daguerre.scene.parts import Curves
+from daguerre.scene.parts import Curves, Mesh
 from daguerre.scene.scene import Scene
 
 
@@ -20,7 +20,7 @@ class Placed:
     Attributes:
         mesh: Index of the mesh.
         material: Index of the material.
-        transforms: World from mesh, shape (N, 4, 4).
+        transforms: World from the positions of the mesh, shape (N, 4, 4).
     """
 
     mesh: int
@@ -44,7 +44,14 @@ def placements(scene: Scene, notes: Notes) -> Iterator[Placed]:
             key = instance.mesh, instance.material
             found.setdefault(key, []).append(instance.transform)
     for (mesh, material), transforms in found.items():
-        yield Placed(mesh, material, np.stack(transforms))
+        yield Placed(mesh, material, np.stack(transforms) @ _from_positions(scene.meshes[mesh]))
+
+
+def _from_positions(mesh: Mesh) -> NDArray[np.float64]:
+    """Space of a mesh from its positions, which may have an origin of their own, (4, 4)."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = mesh.origin
+    return matrix
 
 
 def mirrored(transform: NDArray[np.float64]) -> bool:
