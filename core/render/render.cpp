@@ -33,12 +33,12 @@ struct Sample {
 Box places_of(const Camera& camera) {
     constexpr double kReach = 2;   // m: no lens has its front farther from the camera's position
     constexpr int kSteps = 64;
-    const auto place_at = [&](int step) { return camera.world_from_camera.at(double(step) / kSteps).origin; };
-    Box box{place_at(0), place_at(0)};
+    Vec3d last = camera.world_from_camera.at(0).origin;
+    Box box{last, last};
     double longest = 0;   // step of the camera
-    for (int i = 1; i <= kSteps; ++i) {
-        const Vec3d p = place_at(i);
-        longest = std::max(longest, length(p - place_at(i - 1)));
+    for (int i = 1; i <= kSteps && camera.world_from_camera.moves(); ++i) {
+        const Vec3d p = camera.world_from_camera.at(double(i) / kSteps).origin;
+        longest = std::max(longest, length(p - last)), last = p;
         for (int k = 0; k < 3; ++k) box.min[k] = std::min(box.min[k], p[k]), box.max[k] = std::max(box.max[k], p[k]);
     }
     const double reach = kReach + longest;

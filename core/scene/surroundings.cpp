@@ -75,7 +75,8 @@ void Scene::leave_solids(Ray ray, const Use& use) const {
     }
 }
 
-std::optional<Interior> Scene::around(const Ray& ray, std::span<const std::uint32_t> near, const Wavelengths& wavelengths) const {
+std::optional<Interior> Scene::around(const Ray& ray, std::span<const std::uint32_t> near,
+                                      const Wavelengths& wavelengths) const {
     const auto holds = [&](std::uint32_t i) { return solids_[i].bounds.meets(ray.origin, ray.origin); };
     if (std::ranges::none_of(near, holds)) return std::nullopt;
     Interior here;
