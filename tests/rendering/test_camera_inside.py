@@ -101,6 +101,10 @@ def test_light_paths_to_a_camera_in_water_are_off_and_a_note_says_so() -> None:
     session = Session(tank(), NARROW, resolution=(8, 8), spp=1, light_paths=1.0)
     assert session.light_paths == (0, 0)
     assert "light paths are off: the camera is inside 'water'" in session.notes
+    auto = Session(tank(), NARROW, resolution=(8, 8), spp=1)
+    assert "light paths are off: the camera is inside 'water'" in auto.notes
+    off = Session(tank(), NARROW, resolution=(8, 8), spp=1, light_paths="off")
+    assert not any("light paths" in note for note in off.notes)
     away = Session(tank(), NARROW.with_(transform=at(0, 0, 5)), resolution=(8, 8), light_paths=1.0)
     assert away.light_paths[0] > 0
     assert not any("inside" in note for note in away.notes)

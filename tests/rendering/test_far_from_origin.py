@@ -221,6 +221,11 @@ def test_another_origin_is_another_picture() -> None:
     assert own.key["settings"] != shared.key["settings"]
 
 
+def test_an_origin_out_of_reach_is_refused() -> None:
+    with pytest.raises(dg.UsageError, match=r"origin: wanted a point within 1e\+18 m of 0, got"):
+        Session(dg.Scene(), camera(CELLS[0]), resolution=SIZE, spp=1, origin=(1e30, 0.0, 0.0))
+
+
 def test_an_object_whose_vertices_are_far_from_its_own_origin() -> None:
     # A mover, so that its rays are traced in its own space.
     near, far = dg.Scene(), dg.Scene()

@@ -25,7 +25,7 @@ from .pixels import parse_filter
 from .plate_light import throw_plate
 from .prepare import Prepared
 from .settings import RenderSettings
-from .surroundings import open_solids, solids_around
+from .surroundings import solids_around
 
 #: Reasons for not drawing requested paths.
 DARK = {
@@ -73,12 +73,11 @@ def plan_light(prepared: Prepared, piloted: Plan | None = None) -> LightPlan:
     check_light(prepared)
     core = core_settings_of(prepared)
     wanted = check_light_paths(prepared.settings.light.light_paths)
-    notes = open_solids(prepared)
+    inside, notes = solids_around(prepared)
     if _is_over_plate(prepared):
         wanted = OFF
-    elif around := solids_around(prepared):
-        if wanted not in (None, OFF):
-            notes.append(f"light paths are off: the camera is inside {around[0]}")
+    elif inside and wanted != OFF:
+        notes.append(f"light paths are off: the camera is inside {inside[0]}")
         wanted = OFF
     if piloted is not None:
         piloted = check_light_paths(piloted, "piloted")

@@ -17,7 +17,7 @@ from daguerre.scene.far import Place
 from daguerre.scene.scene import Scene, check_moments
 from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.camera import set_up, with_brightness_of
-from daguerre.setup.origin import origin_of
+from daguerre.setup.origin import given_origin, origin_of
 from daguerre.setup.resolved import ResolvedCamera
 
 from . import diffraction
@@ -132,7 +132,7 @@ def prepare(
     size = settings.film.resolution
     interval = shutter.interval(camera, scene.time, size)
     check_moments(scene, *interval)
-    place = origin_of(camera, scene.time, size) if origin is None else origin
+    place = origin_of(camera, scene.time, size) if origin is None else given_origin(origin)
     if built is None or not built.shows(scene, interval, place):
         built = BuiltScene(scene, interval, built, place)
     setup = set_up(scene, camera, size, built.core)

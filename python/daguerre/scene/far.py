@@ -6,6 +6,7 @@ doubles that far away keeps the difference to an origin of its own (:attr:`.part
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,8 @@ CELL_M = 1024.0
 FAR_M = 16384.0
 
 Place = tuple[float, float, float]
+_Axes = NDArray[np.float64]
+Keeps = Callable[[_Axes, _Axes, _Axes], NDArray[np.bool_]]
 ZERO: Place = (0.0, 0.0, 0.0)
 
 
@@ -60,8 +63,21 @@ def single_if_near(positions: NDArray[np.floating]) -> NDArray[np.floating]:
 
 
 def _far(rows: NDArray[np.float64]) -> Place:
-    """Origin near rows on the axes on which all are far, and nearer to one another than to 0."""
-    low, high = rows.min(axis=0), rows.max(axis=0)
-    far = (low * high > 0) & (np.minimum(abs(low), abs(high)) >= FAR_M)
-    x, y, z = np.where(far, origin_near(0.5 * (low + high)), 0.0).tolist()
+    """Origin near rows on the axes on which all are far."""
+    return origin_where(rows, lambda nearest, farthest, middle: nearest >= FAR_M)
+
+
+def origin_where(rows: NDArray[np.floating], keeps: Keeps) -> Place:
+    """Origin near the middle of rows on the axes on which all are on one side of 0.
+
+    Args:
+        rows: Positions, shape (N, 3).
+        keeps: Further condition of an axis, by the smallest and the largest distance of rows from
+            0, and the distance of the origin, each of shape (3,).
+    """
+    low, high = (np.asarray(end, np.float64) for end in (rows.min(axis=0), rows.max(axis=0)))
+    middle = np.asarray(origin_near(0.5 * (low + high)))
+    nearest, farthest = np.minimum(abs(low), abs(high)), np.maximum(abs(low), abs(high))
+    fits = (low * high > 0) & keeps(nearest, farthest, abs(middle))
+    x, y, z = np.where(fits, middle, 0.0).tolist()
     return x, y, z

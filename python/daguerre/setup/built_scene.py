@@ -22,7 +22,8 @@ class BuiltScene:
 
     Attributes:
         core: Scene of the core.
-        warnings: A sentence for each motion that is only approximated.
+        warnings: A sentence for each motion that is only approximated, and for positions that files
+            have rounded.
     """
 
     def __init__(

@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.shutter import interval
-from daguerre.scene.far import CELL_M, FAR_M, ZERO, Place, origin_near
+from daguerre.errors import UsageError
+from daguerre.scene.far import CELL_M, FAR_M, ZERO, Place, origin_near, origin_where
+from daguerre.scene.limits import MAX_SIZE
 
 from .pose import rigid
 
@@ -32,6 +34,18 @@ def origin_of(camera: Camera, time: float, resolution: tuple[int, int]) -> Place
     """
     begin, end = interval(camera, time, resolution)
     return origin_near(rigid(camera.frozen_at(0.5 * (begin + end)).transform)[:3, 3])
+
+
+def given_origin(origin: Place) -> Place:
+    """Checks an origin that is given.
+
+    Raises:
+        UsageError: It is too far from 0.
+    """
+    x, y, z = map(float, origin)
+    if not max(abs(x), abs(y), abs(z)) < MAX_SIZE:
+        raise UsageError(f"origin: wanted a point within {MAX_SIZE:g} m of 0, got {origin}")
+    return x, y, z
 
 
 def is_near(origin: Place, position: ArrayLike) -> bool:
@@ -84,10 +98,8 @@ def local_origin(positions: NDArray[np.float32], scale: float) -> Place:
     rows = positions.reshape(-1, 3)
     if not np.abs(rows[0]).max() * scale >= FAR_M:
         return ZERO
-    low, high = (np.asarray(end, np.float64) for end in (rows.min(axis=0), rows.max(axis=0)))
-    middle = np.asarray(origin_near(0.5 * (low + high)))
     # Differences are exact between the half and the double of a number (Sterbenz 1974).
-    near = (np.abs(low) >= 0.5 * np.abs(middle)) & (np.abs(high) >= 0.5 * np.abs(middle))
-    near &= (np.abs(low) <= 2 * np.abs(middle)) & (np.abs(high) <= 2 * np.abs(middle))
-    x, y, z = np.where(near & (low * high > 0), middle, 0.0).tolist()
-    return x, y, z
+    return origin_where(
+        rows,
+        lambda nearest, farthest, middle: (nearest >= 0.5 * middle) & (farthest <= 2 * middle),
+    )
