@@ -2,12 +2,15 @@
 #include "bind/unlocked.h"
 
 #include <pthread.h>
+#include <unistd.h>
 
 #define TBB_PREVIEW_WAITING_FOR_WORKERS 1   // its name before oneTBB 2021.9
 #include <oneapi/tbb/global_control.h>
 
 #include <atomic>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <thread>
 
@@ -63,6 +66,14 @@ void in_child() {
     nb::set_leak_warnings(false);   // references of the parent's other threads remain
 }
 
+/// Ends a torn child without the destructors of the libraries loaded before this one. Embree's mutexes may be locked by
+/// threads that the child lacks, and their destructors would abort. Runs before those, as it is registered after them.
+void leave(int status, void*) {
+    if (!forks::torn) return;
+    std::fflush(nullptr);
+    ::_exit(status);
+}
+
 /// When Python exits, a thread that requests its lock would be killed, inside C++ code.
 void park() {
     for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
@@ -110,6 +121,7 @@ bool is_ending_beside(std::thread::id thread) {
 void watch_process() {
     keep_workers();
     pthread_atfork(before_fork, after_fork, in_child);
+    on_exit(leave, nullptr);
     nb::module_::import_("atexit").attr("register")(nb::cpp_function(at_exit));
 }
 

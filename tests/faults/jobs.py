@@ -9,6 +9,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -169,6 +170,33 @@ def drawing(folder: Path) -> None:
         assert is_refusal(said := pool.submit(forked, lambda: redrawn(job, wanted)).result()), said
 
 
+def aborting(folder: Path) -> None:
+    """A child forked within a pass ends; its libraries, here one that aborts, must not clean up."""
+    script = """
+import ctypes, os, sys, threading
+libc = ctypes.CDLL(None)
+assert libc.__cxa_atexit(libc.abort, None, None) == 0  # as a destructor of a library does
+import daguerre as dg
+import tests.faults.jobs as jobs
+job = jobs.jobs(jobs.Path(sys.argv[1]))["plain"]
+began, forked = threading.Event(), threading.Event()
+session = dg.Session(job.scene, job.camera, resolution=(24, 16))
+progress = lambda share: began.set() or forked.wait()
+threading.Thread(target=session.draw, args=(0, 64, progress), daemon=True).start()
+began.wait()
+if not (child := os.fork()):
+    print("the child", end="")
+    sys.exit(3)
+forked.set()
+print([os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])], flush=True)
+os._exit(0)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script, str(folder)], capture_output=True, text=True
+    )
+    assert (done.stdout, done.stderr) == ("the child[3]\n", ""), done.stdout + done.stderr
+
+
 def draws_alone(job: Job) -> str:
     """Draws; what is wrong if no thread of oneTBB helps where there are several cores."""
 
@@ -250,7 +278,7 @@ def leave(folder: Path) -> None:
     began.wait()
 
 
-CASES = {case.__name__: case for case in (idle, pool, drawing, writing, interrupt, leave)}
+CASES = {case.__name__: case for case in (idle, pool, drawing, aborting, writing, interrupt, leave)}
 
 if __name__ == "__main__":
     os.environ["SOURCE_DATE_EPOCH"] = "0"  # the date of a file is no part of its picture
