@@ -27,6 +27,19 @@ from .layer_names import LayerNames, names_of
 _MAX_LAYERS = 100_000
 
 
+def read_anew(name: str) -> Sdf.Layer | None:
+    """Opens a layer with its file's present content; None: USD cannot open it.
+
+    USD keeps a layer while any stage of this process uses it, and compares times of files only, so
+    another file of the same time would count as the old one.
+    """
+    before = Sdf.Layer.Find(name)
+    layer = Sdf.Layer.FindOrOpen(name)
+    if before:
+        before.Reload(force=True)
+    return layer
+
+
 class Stack:
     """A layer and its sublayers, with the values of variables that hold there.
 
@@ -62,6 +75,7 @@ class Layers:
         self._checked: dict[str, bool] = {}
         self._names: dict[str, LayerNames] = {}
         self._kept: dict[str, Sdf.Layer | None] = {}
+        self._opened_anew: set[str] = set()
         self._clips = Clips(self._file)
         real = os.path.realpath(path)
         self._folder = Path(real).parent
@@ -147,14 +161,18 @@ class Layers:
         return self._known(name, real)
 
     def _known(self, name: str, real: str) -> Sdf.Layer | None:
-        before = Sdf.Layer.Find(name)
-        layer = Sdf.Layer.FindOrOpen(name)
-        if before:
-            before.Reload()  # another stage keeps it, and its file may have changed
+        layer = self._anew(name)
         if layer is not None and layer.identifier not in self._names:
             odd = self._checked[package_of(real)]
             self._names[layer.identifier] = names_of(layer, odd)
         return layer
+
+    def _anew(self, name: str) -> Sdf.Layer | None:
+        """Opens a layer, the first time with its file's present content."""
+        if name in self._opened_anew:
+            return Sdf.Layer.FindOrOpen(name)
+        self._opened_anew.add(name)
+        return read_anew(name)
 
     def _check_file(self, real: str) -> bool:
         """Checks the file of a layer, or the package that it is in; returns whether it exists."""
@@ -180,9 +198,8 @@ class Layers:
         real = self._assets.check(place, name)
         if not self._check_file(real):
             return
-        alive = Sdf.Layer.Find(name)
-        if alive:
-            alive.Reload()
+        if Sdf.Layer.Find(name):
+            self._anew(name)
         if self._checked[package_of(real)] and name not in self._kept:
             self._kept[name] = layer = self._opened(name, real)
             if layer is not None:

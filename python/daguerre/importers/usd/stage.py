@@ -27,7 +27,7 @@ from daguerre.files.reading import size_of
 from .assets import Assets
 from .composed import check_count
 from .layer_files import check_file
-from .layers import Layers
+from .layers import Layers, read_anew
 from .values import Clock
 
 _Z_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], np.float64)
@@ -224,7 +224,7 @@ def time_of_code(path: str | os.PathLike[str], code: float) -> float:
     """
     check_file(Path(path), str(path))
     with usd_errors(str(path)):
-        layer = Sdf.Layer.FindOrOpen(os.path.realpath(path))
+        layer = read_anew(os.path.realpath(path))
         if layer is None:
             raise InputError(f"{path}: not a stage that USD can open")
         rate = _rate(str(path), "timeCodesPerSecond", layer.timeCodesPerSecond)
