@@ -108,6 +108,7 @@ class Page:
     open: dict[str, Any] = field(default_factory=dict)
     state: dict[str, Any] = field(default_factory=dict)
     refused: list[str] = field(default_factory=list)
+    changed: list[str] = field(default_factory=list)
     heard: int = 0
     drawn: int = -1
     values: list[Any] = field(default_factory=list)
@@ -135,6 +136,7 @@ class Page:
         self.state = message.get("state", self.state)
         self.heard += "heard" in message
         self.drawn = message.get("drawn", self.drawn)
+        self.changed = message.get("changed", self.changed)
         if "refused" in message:
             self.refused.append(message["refused"])
         if "value" in message:

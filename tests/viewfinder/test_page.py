@@ -19,6 +19,7 @@ from PIL import Image
 
 import daguerre as dg
 from daguerre import cli
+from daguerre.files.recorded import recorded
 from daguerre.viewfinder.clients import Client
 from daguerre.viewfinder.dials import Dials
 from daguerre.viewfinder.drawn import Drawn
@@ -62,11 +63,11 @@ def server(file: Path) -> Iterator[Live]:
 
 def stage_of(file: Path, **given: str) -> Any:
     """A server that shows a file as ``daguerre view`` opens it."""
-    made = dg.load(file)
+    with recorded() as files:
+        made = dg.load(file)
     settings = dg.RenderSettings.of(resolution=(96, 64), spp=4)
-    stage = Stage(
-        made, made.camera(), settings, load=lambda: (dg.load(file), dg.load(file).camera())
-    )
+    stage = Stage(made, made.camera(), settings, files=files)
+    stage.load = lambda: (dg.load(file), dg.load(file).camera())
     dials, said = opened(stage, Dials.of({"lens": LENS, **given}))
     return live(stage, dials, [str(file), *WORDS], said=said)
 

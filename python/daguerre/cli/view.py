@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from daguerre import memory, units
 from daguerre.color.spaces import check_linear
 from daguerre.files import extras
+from daguerre.files.recorded import recorded
 from daguerre.parameters.parameter import Parameter
 
 from . import console
@@ -90,19 +91,22 @@ def view(
         scene = scene_flags.load(scene_path)
         for warning in scene.warnings:
             console.warn(f"{scene_path}: {warning}")
-        return scene, seen.view(cameras).camera(scene)
+        anew = replace(cameras, flags=replace(calibration_flags))  # they keep what they read
+        (view,) = anew.views(None)
+        return scene, view.view(anew).camera(scene)
 
-    scene, camera = load()
-    size = cameras.size(seen, job_flags.res, scene)
-    settings = checks.settings_of(job_flags, settings_flags, [], size)
-    checks.check_crop([settings])
-    settings = dials.before(settings)
-    photograph = photograph_of({}, None, None, settings.sampling.seed)
-    if job_flags.colorspace is not None:
-        space = check_linear(job_flags.colorspace, "--colorspace")
-        photograph = replace(photograph, colorspace=space)
-    stage = Stage(scene, camera, settings, photograph, job_flags.tone, load)
-    in_background(lambda: stage.try_out(dials))
+    with recorded() as files:
+        scene, camera = load()
+        size = cameras.size(seen, job_flags.res, scene)
+        settings = checks.settings_of(job_flags, settings_flags, [], size)
+        checks.check_crop([settings])
+        settings = dials.before(settings)
+        photograph = photograph_of({}, None, None, settings.sampling.seed)
+        if job_flags.colorspace is not None:
+            space = check_linear(job_flags.colorspace, "--colorspace")
+            photograph = replace(photograph, colorspace=space)
+        stage = Stage(scene, camera, settings, photograph, job_flags.tone, load, files)
+        in_background(lambda: stage.try_out(dials))
     dials, said = opened(stage, dials)
     words = without(console.argv, [*DIALS])
     if job_flags.output is None:

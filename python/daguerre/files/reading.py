@@ -57,6 +57,12 @@ def is_file(path: Path) -> bool:
     return _holds(path.is_file)
 
 
+def is_input(path: Path) -> bool:
+    """Whether there is such a file to read; notes a missing file too, as it may come."""
+    note_read([path])
+    return is_file(path)
+
+
 def is_folder(path: Path) -> bool:
     """Whether there is such a folder; false also for an invalid name."""
     return _holds(path.is_dir)
@@ -98,6 +104,7 @@ def size_of(path: Path, most: int | None = None) -> int:
         UsageError: The command is about to write it.
     """
     if fault := fault_of(path):
+        note_read([path])  # a missing file may come
         raise InputError(f"{shown(path)}: {fault}")
     with reading(path):
         size = path.stat().st_size

@@ -70,8 +70,7 @@ class Folder:
         fault = fault_of(path)
         if fault and fault != MISSING:
             uri.fail(f"{short(str(path), 200)}: {fault}")
-        if not fault:
-            note_read([path])
+        note_read([path])  # also a missing file, which may come
         return None if fault else path
 
     def _path(self, uri: Item) -> Path:

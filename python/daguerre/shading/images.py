@@ -19,7 +19,7 @@ from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
 from daguerre.files import uses
 from daguerre.files.notes import Notes
-from daguerre.files.reading import is_file
+from daguerre.files.reading import is_input
 from daguerre.pictures.stated_colors import PLAIN, Colors
 from daguerre.scene.scene import Scene
 
@@ -189,7 +189,7 @@ class Images(Textures):
         packaged = _PACKAGED.match(path)
         package = packaged["package"] if packaged else path
         file = self.resolve(place, package)
-        if not is_file(file):
+        if not is_input(file):
             return None
         where = f"{place}: {path}"
         if packaged is None:
@@ -205,7 +205,7 @@ class Images(Textures):
         packaged = _PACKAGED.match(path)
         if packaged:
             file = self.resolve(place, packaged["package"])
-            if not is_file(file):
+            if not is_input(file):
                 return None
             with opened_package(file, place) as archive:
                 found = udim.tile_numbers(archive.namelist(), packaged["name"])

@@ -54,7 +54,7 @@ from .sheet import Sheet
 from .show import Show
 from .stage import Stage
 from .switches import on_in
-from .watch import watch
+from .watch import Watch
 from .widest import opened_as_wide
 
 
@@ -96,7 +96,8 @@ class Hub:
         self._previews = Previews()
         self._painter = Painter(self.publish, self._failed, self._ask_for_turn)
         self._request()
-        self._start(watch(stage.scene.path, self._clients))
+        self._watch = Watch(lambda: self._stage.files, self._clients)
+        self._start(self._watch.run())
 
     def close(self) -> None:
         """Ends the painter."""
@@ -120,6 +121,7 @@ class Hub:
         await client.tell({"role": "turns" if client.turns else "watches"})
         await client.tell({"open": self._opened()})
         await client.tell(self._state())
+        await self._watch.welcome(client)
         await client.offer(self._sheet)
 
     async def hear(self, client: Client, text: str | bytes) -> None:
@@ -188,9 +190,10 @@ class Hub:
             case ShowOtherwise(changes):
                 await self._show_otherwise(self._show.changed(changes), client)
             case Reload():
-                self._stage = await asyncio.to_thread(self._stage.reload)
+                self._stage = await asyncio.to_thread(self._stage.reload, self.dials)
                 await self._go(self._history, client)
                 await self._clients.tell({"open": self._opened()})
+                await self._watch.begin()
 
     async def _turn(
         self,

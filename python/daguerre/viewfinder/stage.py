@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -11,6 +11,7 @@ from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure, is_held
 from daguerre.camera.exposure_mode import CHOICES, chosen_by, is_automatic
 from daguerre.errors import InputError, UsageError, core_errors
+from daguerre.files.recorded import Stamp, recorded
 from daguerre.rendering.backdrop import shows_plate
 from daguerre.rendering.light_plan import check_light
 from daguerre.rendering.photograph import Photograph
@@ -44,6 +45,7 @@ class Stage:
         photograph: Sensor and development before any dial.
         tone: Tone curve of pictures that are not developed.
         load: Loads the scene again; None: the scene cannot be loaded again.
+        files: Files that were read for it, with their stamps before.
         built: Scene built for the core, kept between shots.
         meter: Light meter for automatic modes.
         layers: Draws layers of live ghosts for pictures on the way.
@@ -57,22 +59,29 @@ class Stage:
     photograph: Photograph = field(default_factory=Photograph)
     tone: str = "srgb"
     load: Callable[[], tuple[Scene, Camera]] | None = None
+    files: Mapping[str, Stamp] = field(default_factory=dict)
     built: BuiltScene | None = None
     meter: LightMeter = field(default_factory=LightMeter)
     layers: Layers = field(default_factory=Layers)
     moment: Scene | None = None
     metering: threading.Lock = field(default_factory=threading.Lock, repr=False, compare=False)
 
-    def reload(self) -> Stage:
+    def reload(self, dials: Dials) -> Stage:
         """Loads the scene again; returns the stage with it.
 
+        Args:
+            dials: Dials that must fit the scene.
+
         Raises:
-            DaguerreError: It cannot be loaded.
+            DaguerreError: It cannot be loaded, or not be drawn with these dials.
         """
         if self.load is None:
             raise UsageError("reload: this scene was not read from a file")
-        scene, camera = self.load()
-        return Stage(scene, camera, self.settings, self.photograph, self.tone, self.load)
+        with recorded() as files:
+            scene, camera = self.load()
+            made = Stage(scene, camera, self.settings, self.photograph, self.tone, self.load, files)
+            made.set_up(made.shot(dials))
+        return made
 
     def shot(self, dials: Dials) -> Shot:
         """Returns the picture that dials ask for.

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from daguerre.errors import asked_by
-from daguerre.files.reading import MISSING, fault_of, is_file, is_folder, read_bytes
+from daguerre.files.reading import MISSING, fault_of, is_folder, is_input, read_bytes
 from daguerre.files.text_lines import MAX_BYTES
 from daguerre.files.uris import Folder
 
@@ -70,7 +70,7 @@ class Files:
         """
         for folder in self._folders:
             found = self._real(folder, name, entry)
-            if is_file(found):
+            if is_input(found):
                 self._check(found, name, entry)
                 return found
         first = self.first(name, entry)

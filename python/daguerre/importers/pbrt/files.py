@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from daguerre.errors import InputError, asked_by
+from daguerre.files.in_use import note_read
 from daguerre.files.includes import Includes
 from daguerre.files.json_item import Item
 from daguerre.files.uris import Folder
@@ -119,7 +120,10 @@ class Files:
         try:
             path = Path(os.path.realpath(self._folder.base / name))
             inside = any(path.is_relative_to(folder) for folder in self._folder.allowed)
-            return None if name and inside and not path.exists() else path
+            if not (name and inside) or path.exists():
+                return path
+            note_read([path])  # it may come
+            return None
         except (OSError, ValueError):  # no name of a file
             return self._folder.base
 

@@ -10,7 +10,7 @@ from pxr import Ar, Sdf, Usd
 
 from daguerre.checks import short
 from daguerre.errors import InputError
-from daguerre.files.reading import is_file
+from daguerre.files.reading import is_input
 from daguerre.files.uris import Folder
 
 from .anchored import SCHEME, anchored
@@ -84,7 +84,7 @@ class Assets:
         found = Path(self.check(place, name))
         if Ar.IsPackageRelativePath(str(found)):
             return found
-        return found if is_file(found) else None
+        return found if is_input(found) else None
 
 
 def package_of(name: str) -> str:

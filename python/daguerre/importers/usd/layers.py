@@ -15,6 +15,7 @@ from pathlib import Path
 from pxr import Ar, Sdf
 
 from daguerre.errors import InputError
+from daguerre.files.in_use import note_read
 
 from .anchored import anchored
 from .assets import Assets, package_of
@@ -179,6 +180,7 @@ class Layers:
         file = package_of(real)
         if file not in self._checked:
             if not os.path.lexists(file):
+                note_read([file])  # it may come
                 return False
             self._checked[file] = check_file(Path(file), file)
         return True

@@ -14,7 +14,7 @@ from pxr import Sdf, Usd, UsdShade
 from daguerre.errors import InputError
 from daguerre.files.json_item import short
 from daguerre.files.notes import Notes
-from daguerre.files.reading import is_file
+from daguerre.files.reading import is_input
 from daguerre.scene.materials import Gltf, Material
 from daguerre.scene.scene import Scene
 from daguerre.shading.arithmetic import Arithmetic
@@ -163,7 +163,7 @@ class Materials:
             return str(path), _EMPTY
         asset, name = found
         file = self._images.resolve(str(path), asset)
-        if not is_file(file):
+        if not is_input(file):
             self._notes.add("a MaterialX document that is missing is left out")
             return str(path), _EMPTY
         if file not in self._documents:

@@ -127,11 +127,11 @@ class _Uses:
         return self.limits
 
     def _open(self, name: str) -> None:
+        note_read([name])
         try:
             facts = Path(name).stat()
         except (OSError, ValueError):
             return
-        note_read([name])
         self._files[facts.st_dev, facts.st_ino] = facts.st_size
 
     @property

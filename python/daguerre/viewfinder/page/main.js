@@ -129,11 +129,16 @@ class Viewfinder {
     if (message.refused) this.refused = {why: message.refused, turn: this.state?.turn};
     if (this.open && this.state && (message.state || message.refused)) this.update();
     this.markBusy();
-    if (message.changed) {
-      this.find('changed').hidden = false;
-      this.find('changed').firstElementChild.textContent = `${message.changed} has changed.`;
-    }
+    if (message.changed) this.offer(message.changed);
     this.tell('told', message);
+  }
+
+  /** Offers to load the scene again if files changed. */
+  offer([first, ...others]) {
+    const more = others.length === 1 ? ` and ${others[0]}` : ` and ${others.length} other files`;
+    this.find('changed').hidden = !first;
+    this.find('changed').firstElementChild.textContent =
+      others.length ? `${first}${more} have changed.` : `${first} has changed.`;
   }
 
   /** Sends the next turn once a picture of the last is drawn, while the server develops it. */
