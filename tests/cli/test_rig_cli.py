@@ -34,6 +34,15 @@ cam1:
   resolution: [24, 24]
   T_cn_cnm1: [[1, 0, 0, -0.2], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 """
+#: A fisheye that sees 122 degrees to either side.
+WIDE = """
+cam0:
+  camera_model: pinhole
+  intrinsics: [7.5, 7.5, 15.5, 9.5]
+  distortion_model: equidistant
+  distortion_coeffs: [0, 0, 0, 0]
+  resolution: [32, 20]
+"""
 QUICK = ["--sky", "1,0.9,0.8", "--spp", "2", "--lens", "pinhole", "--quiet"]
 
 
@@ -93,6 +102,17 @@ def test_a_pair_stands_around_its_camera() -> None:
     camera = dg.load("s.glb").camera("A")
     alone = dg.stereo_pair(camera, 0.3)["right"]
     assert alone.transform[0, 3] == pytest.approx(0.15)
+
+
+def test_a_pair_that_lacks_parallax_at_its_sides_has_one_note(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    flags = ["--sky", "1,1,1", "--spp", "1", "--res", "50%", "-c", "A", "--json-progress"]
+    Path("wide.yaml").write_text(WIDE)
+    for more, count in ((["--stereo", "0.06"], 1), ([], 0)):
+        assert render("-o", "w.exr", "--calibration", "wide.yaml", *more, *flags) == 0
+        out, err = capsys.readouterr()
+        assert (out + err).count("parallax") == count
 
 
 def test_disparity_of_a_pair(capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+import re
+import warnings
 from typing import Any
 
 import numpy as np
@@ -98,6 +101,50 @@ def test_disparity_is_where_both_pictures_show_a_point() -> None:
     options: dict[str, Any] = {"resolution": (48, 27), "spp": 1, "gt_time": "mid"}
     with pytest.raises(InputError, match="gt_lens='chief'"):
         disparity(dg.render(scene, cameras["left"], gt_lens="mean", **options), 0.1)
+
+
+def _parallax(angle_deg: float) -> float:
+    """Angle between the sights of both eyes of a panorama to a point 10 m away, of baselines."""
+    camera = dg.Camera(projection=Projection.of_field("equirectangular", (64, 32), 360))
+    with pytest.warns(UserWarning, match="parallax"):
+        pair = dg.stereo_pair(camera, 0.1)
+    turn = math.radians(angle_deg)
+    point = 10 * np.array([math.sin(turn), 0, -math.cos(turn), 0.1])
+    seen = [np.linalg.inv(pair[name].transform) @ point for name in ("left", "right")]
+    left, right = (math.atan2(x, -z) for x, _, z, _ in seen)
+    return math.remainder(left - right, math.tau) / 0.01
+
+
+def test_a_pair_of_a_panorama_has_parallax_ahead_alone_as_its_note_says() -> None:
+    for angle in (0, 60, 90, 120, 180):
+        assert _parallax(angle) == pytest.approx(math.cos(math.radians(angle)), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("projection", "words"),
+    [
+        (Projection.of_field("equirectangular", (64, 32), 360), "reversed behind.* 180 degrees"),
+        (Projection("cube", (384, 64), (64.0, 64.0)), "reversed behind.* 180 degrees"),
+        (Projection.of_field("equidistant", (64, 64), 190), "reversed behind.* 95 degrees"),
+        (Projection.of_field("equisolid", (64, 64), 170), r"90 degrees; .* reaches 85 degrees"),
+        (Projection("kannala_brandt", (64, 48), (15.0, 15.0)), "reversed behind.* 122 degrees"),
+        (Projection("double_sphere", (640, 480), (150.0, 150.0), None, (0.1, 0.6)), "degrees$"),
+        (Projection.of_field("equidistant", (64, 64), 140), ""),
+        (MODEL, ""),
+        (None, ""),
+    ],
+)
+def test_a_pair_that_lacks_parallax_at_its_sides_has_a_note(
+    projection: Projection | None, words: str
+) -> None:
+    camera = dg.Camera(projection=projection)
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        dg.stereo_pair(camera, 0.06)
+    assert len(found) == bool(words)
+    for one in found:
+        assert re.search(words, str(one.message))
+        assert one.filename == __file__
 
 
 def test_bad_rigs_are_errors() -> None:

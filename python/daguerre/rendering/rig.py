@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from typing import Any, Unpack
 
@@ -19,6 +20,7 @@ from daguerre.scene.far import Place
 from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.pose import moved_right
+from daguerre.setup.stereo import stereo_note
 from daguerre.setup.straight import straight_focal_px
 
 from .auto_exposure import Chosen, choose
@@ -86,13 +88,16 @@ def render_rig(
 def stereo_pair(camera: Camera, baseline: float) -> dict[str, Camera]:
     """Makes a stereo pair of parallel cameras, with the given camera midway between them.
 
-    They move with it.
+    They move with it. A ``UserWarning`` says that the sides of a panorama or of a wide fisheye have
+    no parallax.
 
     Args:
         camera: Camera that gives pose and all parameters.
         baseline: Distance between the two cameras, m.
     """
     number(baseline, "stereo_pair: baseline", above=0)
+    if note := stereo_note(camera):
+        warnings.warn(note, stacklevel=3)  # in the caller of the guarded function
     return {
         name: moved_right(camera, side * baseline)
         for name, side in (("left", -0.5), ("right", 0.5))

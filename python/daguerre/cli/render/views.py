@@ -61,7 +61,13 @@ class CallView:
             return moved_right(unshifted(scene), self.shift)
 
         def notes(camera: Camera) -> list[str]:
-            return cameras.flags.notes(camera, self.calibration)
+            found = cameras.flags.notes(camera, self.calibration)
+            if not self.shift < 0:  # once for a pair
+                return found
+            from daguerre.setup.stereo import stereo_note
+
+            note = stereo_note(camera)
+            return [*found, note] if note else found
 
         return picture.View(self.name, camera, notes, unshifted)
 
