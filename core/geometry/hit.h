@@ -29,7 +29,9 @@ struct SurfaceHit {
     float time = 0;                 // copied from the ray
     std::uint32_t instance = 0, primitive = 0;
     bool front = true;  // dot(ng, wo) > 0
+    bool outside_disperses = false;   // the solid outside the surface disperses light
     float choice = 0;   // uniform number in [0, 1) that selects the component of a mixture
+    float outside_ior = 1;   // index outside the surface, for the hero; other than 1 within another solid
     float error =
         0;  // m; offset of rays that leave the surface (scaled to the magnitude of position)
 };
