@@ -177,6 +177,10 @@ struct Builder {
         description.media.of_material[material] = {inside, outside, invisible};
     }
 
+    void set_nesting(std::uint32_t material, int priority, bool literal) {
+        description.nesting[material] = {priority, literal};
+    }
+
     int add_profile(std::shared_ptr<LightProfile> profile) {
         description.profiles.push_back(std::move(profile));
         return int(description.profiles.size()) - 1;
@@ -232,6 +236,12 @@ std::vector<std::pair<std::uint32_t, float>> surroundings(const Scene& scene, co
     return found;
 }
 
+auto overlaps(const Scene& scene) {
+    std::vector<std::tuple<std::uint32_t, std::uint32_t, std::string>> first;
+    for (const Overlap& o : scene.overlaps()) first.emplace_back(o.lower, o.higher, o.by);
+    return first;
+}
+
 void bind_built_scene(nb::module_& m) {
     nb::class_<Scene>(m, "Scene")
         .def_prop_ro("triangle_count", &Scene::triangle_count)
@@ -244,6 +254,9 @@ void bind_built_scene(nb::module_& m) {
                      })
         .def_prop_ro("origin", [](const Scene& s) { return std::tuple{s.origin().x, s.origin().y, s.origin().z}; },
                      "Origin of the scene's frame in the world, m. Arguments and results are in the world.")
+        .def_prop_ro("overlaps", &overlaps,
+                     "The first pairs of overlapping solids, as instances: lower, higher, and why the higher one is there.")
+        .def_prop_ro("nests_too_deeply", &Scene::nests_too_deeply, "Whether more solids hold each other than a path knows.")
         .def("surroundings", &surroundings, "point"_a, "time"_a,
              "Absorbing volumes around a point at a time (fraction of the interval): pairs of an instance and the share "
              "of directions in which its mesh is closed.")
@@ -278,6 +291,9 @@ void def_media(nb::class_<Builder>& c) {
         .def("set_media", &Builder::set_media, "material"_a, "inside"_a, "outside"_a, "invisible"_a,
              "Media on both sides of a material's surfaces; -1: none inside, outside that of the world. invisible: "
              "nothing else is there.")
+        .def("set_nesting", &Builder::set_nesting, "material"_a, "priority"_a, "literal"_a,
+             "Where solids overlap, the one with the higher priority is there; literal: the surfaces are interfaces as "
+             "given, and never hidden.")
         .def("set_fog", [](Builder& b, int medium) { b.description.media.fog = medium; }, "medium"_a);
 }
 

@@ -77,6 +77,19 @@ void disperse(const GltfMaterial& m, const Wavelengths& wavelengths, GltfSurface
     s.disperses = !wavelengths.secondary_ended;
 }
 
+/// Makes indices relative to the solid outside.
+void become_relative(const SurfaceHit& hit, GltfSurface& s) {
+    if (!s.disperses) s.iors = s.ior;
+    s.ior /= hit.outside_ior, s.iors *= 1 / hit.outside_ior;
+    s.disperses = s.disperses || (hit.outside_disperses && s.volume && s.transmission > 0);
+}
+
+/// The absorption of KHR_materials_volume.
+Interior interior_of(const GltfMaterial& m, const Wavelengths& wavelengths) {
+    if (!(m.thickness > 0) || !std::isfinite(m.attenuation_distance)) return {};
+    return {true, wavelengths.reflectance(m.attenuation_color), m.attenuation_distance};
+}
+
 struct SpecularGlossiness {
     Rgb diffuse, f0;
     float glossiness;
@@ -146,11 +159,17 @@ GltfSurface gltf_surface(const GltfMaterial& m, const Textures& textures,
         s.diffuse_transmission_color = wavelengths.reflectance(d.color);
     }
     s.volume = m.thickness > 0;
-    if (s.volume && std::isfinite(m.attenuation_distance))
-        s.interior = {true, wavelengths.reflectance(m.attenuation_color),
-                      m.attenuation_distance};
+    s.interior = interior_of(m, wavelengths);
     if (s.volume && m.dispersion > 0 && s.transmission > 0) disperse(m, wavelengths, s);
+    if (hit.outside_ior != 1) become_relative(hit, s);
     return s;
+}
+
+SolidOptics solid_optics_of(const GltfMaterial& m, const Wavelengths& wavelengths) {
+    GltfSurface s;
+    s.ior = m.ior;
+    if (m.dispersion > 0) disperse(m, wavelengths, s);
+    return {s.ior > 0 ? s.ior : 1, s.disperses, interior_of(m, wavelengths)};
 }
 
 Rgb surface_albedo(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit) {

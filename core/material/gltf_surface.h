@@ -18,6 +18,8 @@ float slope_variance(const GltfMaterial& m, const std::vector<Texture>& textures
 GltfSurface gltf_surface(const GltfMaterial& m, const std::vector<Texture>& textures,
                          const SurfaceHit& hit, const Wavelengths& wavelengths);
 
+SolidOptics solid_optics_of(const GltfMaterial& m, const Wavelengths& wavelengths);
+
 /// Diffuse and specular albedo of the surface, for the `albedo` channel.
 Rgb surface_albedo(const GltfMaterial& m, const std::vector<Texture>& textures,
                    const SurfaceHit& hit);

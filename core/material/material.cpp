@@ -288,8 +288,7 @@ bool has_normal_map(const Material& material) {
 
 bool bounds_solid(const Material& material) {
     if (any_part(material, bounds_solid)) return true;
-    if (const auto* m = std::get_if<DielectricMaterial>(&material.kind))
-        return !m->thin && (m->ior != 1 || m->ior_by_wavelength);
+    if (const auto* m = std::get_if<DielectricMaterial>(&material.kind)) return !m->thin;
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
     return m && m->transmission > 0 && m->thickness > 0;
 }

@@ -115,6 +115,13 @@ Clear clearness(const Material& material);
 bool has_normal_map(const Material& material);
 /// Whether closed meshes of a material, or of a part of a mixture, are refracting solids.
 bool bounds_solid(const Material& material);
+/// Index at the hero wavelength, and absorption, of the inside of a solid.
+struct SolidOptics {
+    float ior = 1;
+    bool disperses = false;
+    Interior interior{};
+};
+SolidOptics solid_optics(const Material& material, const Wavelengths& wavelengths);
 
 /// True if it, or a part of a mixture, is black from behind.
 bool is_one_sided(const Material& material);

@@ -1,6 +1,8 @@
 // shade_surfaces.cpp -- evaluates factors times textures at a hit, and chooses the simplest sufficient BSDF.
 #include "material/shade_surfaces.h"
 
+#include "material/gltf_surface.h"
+
 namespace dg {
 namespace {
 
@@ -63,6 +65,10 @@ struct Index {
     float hero = 1;
     bool disperses = false;
     Spectrum each{1.f};
+    Index relative_to_outside(const SurfaceHit& hit) const {
+        if (hit.outside_ior == 1) return *this;
+        return {hero / hit.outside_ior, disperses || hit.outside_disperses, each * (1 / hit.outside_ior)};
+    }
 };
 Index index_of(const DielectricMaterial& m, const Wavelengths& wavelengths) {
     if (!m.ior_by_wavelength && m.dispersion <= 0) return {m.ior, false, m.ior};
@@ -98,7 +104,7 @@ Bsdf shade_kind(const ConductorMaterial& m, const Textures& textures, const Surf
 Bsdf shade_kind(const DielectricMaterial& m, const Textures& textures, const SurfaceHit& hit,
                 const Wavelengths& wavelengths) {
     const Spectrum tint = share(m.tint, wavelengths);
-    const Index n = index_of(m, wavelengths);
+    const Index n = index_of(m, wavelengths).relative_to_outside(hit);
     const Alphas a = read_alphas(m.alpha, true, textures, hit);
     const bool ggx = m.alpha.distribution == Distribution::ggx;
     if (!m.thin && !m.energy_compensation && a.u == a.v && is_white(m.reflection_tint) && ggx)
@@ -131,6 +137,18 @@ Bsdf shade_kind(const CoatedMaterial& m, const Textures& textures, const Surface
         base.diffuse = reflectance_of(m.diffuse, textures, hit, wavelengths);
     }
     return Bsdf(std::in_place_type<CoatedBsdf>, hit.ns, hit.ng, coat, base);
+}
+
+SolidOptics solid_optics(const Material& material, const Wavelengths& wavelengths) {
+    if (const auto* m = std::get_if<DielectricMaterial>(&material.kind)) {
+        const Index index = index_of(*m, wavelengths);
+        return {index.hero, index.disperses, {}};
+    }
+    if (const auto* m = std::get_if<GltfMaterial>(&material.kind)) return solid_optics_of(*m, wavelengths);
+    if (const auto* mix = std::get_if<MixMaterial>(&material.kind))
+        for (const MixPart& part : mix->parts)
+            if (bounds_solid(part.most())) return solid_optics(part.most(), wavelengths);
+    return {};
 }
 
 Rgb albedo_of(const DiffuseMaterial& m, const Textures& textures, const SurfaceHit& hit) {

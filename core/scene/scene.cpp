@@ -89,12 +89,12 @@ std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
     scene->changes_ = std::move(changes);
     link_mixtures(scene->description_.materials, scene->changes_.materials);
     scene->find_media();
+    scene->find_solids();
     const auto geometry = scene->geometry_of_instances();
     scene->build_intersector(geometry);
     scene->build_records(geometry);
     scene->build_lights();
     scene->measure();
-    scene->find_solids();
     return scene;
 }
 
@@ -104,11 +104,12 @@ std::vector<InstanceGeometry> Scene::geometry_of_instances() {
             return !std::holds_alternative<SphereLight>(light);
         });
     std::vector<InstanceGeometry> geometry;
-    for (const Instance& i : description_.instances) {
+    for (std::uint32_t k = 0; k < description_.instances.size(); ++k) {
+        const Instance& i = description_.instances[k];
         const bool cutout = std::ranges::any_of(keys_of(i.material), [&](const Material& m) {
             return may_be_transparent(m, description_.meshes[i.mesh], description_.textures);
         });
-        const Clear clear = clear_for_shadows(i, delta_lights);
+        const Clear clear = clear_for_shadows(k, delta_lights);
         has_clear_ = has_clear_ || clear != Clear::no;
         geometry.push_back(
             {i.mesh, i.world_from_local, cutout, clear, i.motion.get(), i.shown.get(), i.catcher.has_value()});
@@ -124,9 +125,11 @@ void Scene::build_intersector(const std::vector<InstanceGeometry>& geometry) {
 }
 
 /// Without delta lights, shadow rays need no tests for volumes.
-Clear Scene::clear_for_shadows(const Instance& instance, bool delta_lights) const {
+Clear Scene::clear_for_shadows(std::uint32_t index, bool delta_lights) const {
+    const Instance& instance = description_.instances[index];
     const auto bounds = description_.media.of_material.find(instance.material);
     if (bounds != description_.media.of_material.end() && bounds->second.invisible) return Clear::sheet;
+    if (rank(index) > 0) return Clear::volume;   // other solids may hide its boundary
     const MaterialChange* change = change_of(instance.material);
     const Clear clear = change ? clearness(change->range)
                                : clearness(description_.materials[instance.material]);

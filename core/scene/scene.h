@@ -19,6 +19,8 @@
 #include "scene/changes.h"
 #include "scene/instance_record.h"
 #include "scene/media.h"
+#include "scene/solid_ranks.h"
+#include "scene/solids.h"
 
 namespace dg {
 
@@ -41,6 +43,7 @@ struct SceneDescription {
     std::vector<Light> lights;  // punctual and sphere lights
     std::vector<std::shared_ptr<const LightProfile>> profiles;   // for lights and materials
     SceneMedia media;
+    std::map<std::uint32_t, Nesting> nesting;   // of materials, by index; others nest by containment
     std::optional<Environment> environment;
     LightChoice light_choice = LightChoice::tree;
     /// Exposed interval of the picture, s, over all rows of the film. Times inside the scene are fractions of it, 0 ..
@@ -90,7 +93,10 @@ class Scene {
     /// behind clear surfaces. Passes thin smooth sheets, as paths do. Passes the boundaries of volumes only for delta
     /// lights, which paths cannot find, and ignores refraction: applies the Fresnel transmittance at each boundary, and
     /// absorption along the unrefracted ray, which starts in `medium`.
-    Spectrum visibility(Ray ray, bool delta, const Interior& medium, const Wavelengths& wavelengths) const;
+    Spectrum visibility(const Ray& ray, bool delta, const Interior& medium, const Wavelengths& wavelengths) const;
+    /// The same for a ray that may start in overlapping solids.
+    Spectrum visibility_nested(const Ray& ray, bool delta, const Surroundings& here,
+                               const Wavelengths& wavelengths) const;
 
     /// Transmittance along `ray` from t_min to t_max through air and thin sheets; 0 for t_max < 0.
     Spectrum visibility_along(const Ray& ray, const Wavelengths& wavelengths) const;
@@ -101,19 +107,40 @@ class Scene {
     bool has_media() const { return has_media_; }
     /// The medium at the origin of a ray, determined from its hits; for the first ray of a path.
     Interior medium_around(Ray ray) const;
-    // Refracting solids around cameras (surroundings.cpp).
+    // Refracting solids (surroundings.cpp).
+    /// Whether solids overlap, so that boundaries may be hidden.
+    bool has_nested() const { return !ranks_.of_instance.empty(); }
+    /// The first overlaps.
+    const std::vector<Overlap>& overlaps() const { return ranks_.overlaps; }
+    /// Whether more solids hold each other than a path knows.
+    bool nests_too_deeply() const { return ranks_.deepest > Solids::kMost; }
+    /// Rank among overlapping solids; 0: the surface is no boundary of such a solid.
+    std::uint32_t rank(std::uint32_t instance) const { return has_nested() ? ranks_.of_instance[instance] : 0; }
+    /// Sets the index outside a boundary that is hit in `solids`; false: a solid of a higher rank hides it.
+    bool meet_boundary(const Solids& solids, SurfaceHit& hit, const Wavelengths& wavelengths) const;
+    /// Whether a point of `solids` is in another solid than an instance.
+    bool in_other(const Solids& solids, std::uint32_t instance) const {
+        return solids.top(ranks_.of_instance, instance) != Solids::kNone;
+    }
+    /// Enters or leaves the solid of a boundary, and solids with boundaries at the same place.
+    void cross_boundary(Solids& solids, const SurfaceHit& hit, bool entering) const;
+    /// The inside of the solid that is there, or the fog.
+    Interior interior_in(const Solids& solids, float time, const Wavelengths& wavelengths) const;
     /// Solids, by index, that may hold a point of the box at some time.
     std::vector<std::uint32_t> solids_near(const Box& box) const;
-    /// Interior of the innermost solid or medium around the origin of a camera ray; empty: the ray begins in none of the
-    /// solids `near`.
-    std::optional<Interior> around(const Ray& ray, std::span<const std::uint32_t> near,
-                                   const Wavelengths& wavelengths) const;
+    /// Surroundings of the origin of a camera ray; empty: the ray begins in none of the solids `near`.
+    std::optional<Surroundings> around(const Ray& ray, std::span<const std::uint32_t> near,
+                                       const Wavelengths& wavelengths) const;
+    /// Whether a ray begins in a solid.
+    bool begins_in_solid(const Ray& ray) const;
     /// A solid around a point, and the share of directions in which its mesh is closed.
     struct Surrounding {
         std::uint32_t instance;
         float share;
     };
     std::vector<Surrounding> surroundings(Vec3f point, float time) const;
+    /// Crosses the boundary of a ranked solid.
+    void cross_nested(Surroundings& here, const SurfaceHit& hit, bool entering, const Wavelengths& wavelengths) const;
     /// The medium behind a surface of an instance that is hit inside `here`; `inside` and `bounds_volume` are from its
     /// BSDF.
     Interior beyond(const Interior& here, std::uint32_t instance, const Interior& inside, bool bounds_volume,
@@ -178,12 +205,7 @@ class Scene {
     };
     Leaving leave(const EmissionRay& emitted, float time) const;
 
-    struct Bounds {
-        Vec3f min, max;
-        bool meets(Vec3f low, Vec3f high) const {
-            return low.x <= max.x && low.y <= max.y && low.z <= max.z && high.x >= min.x && high.y >= min.y && high.z >= min.z;
-        }
-    };
+    using Bounds = dg::Bounds;
     /// Bounds of the instances over all times; 0 without instances.
     Bounds bounds() const { return bounds_; }
     /// Origin of the scene's frame in the world, m.
@@ -208,7 +230,10 @@ class Scene {
     Rgb profile_at(std::int32_t profile, std::uint32_t instance, float time, Vec3f away) const;
     std::optional<float> peak_of(std::int32_t profile) const;
     LightProfiles light_profiles() const;
-    Spectrum transmission(const Ray& ray, float distance, bool delta, const Interior& medium,
+    template <class Around>   // Interior or Surroundings
+    Spectrum to_light(Ray ray, bool delta, const Around& here, const Wavelengths& wavelengths) const;
+    template <class Around>
+    Spectrum transmission(const Ray& ray, float distance, bool delta, const Around& here,
                           const Wavelengths& wavelengths) const;
     Spectrum through_medium(const Interior& in, const Ray& ray, float begin, float end,
                             const Wavelengths& wavelengths) const;
@@ -218,10 +243,13 @@ class Scene {
     std::optional<RawHit> first_visible(Ray ray) const;
     void find_media();
     void find_solids();
+    void cross_coincident(Solids& solids, const SurfaceHit& hit, bool onward) const;
+    SolidOptics optics_in(std::uint32_t instance, float time, const Wavelengths& wavelengths) const;
     template <typename Use>
     void leave_solids(Ray ray, const Use& use) const;
-    Spectrum through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
-                               float distance, const Wavelengths& wavelengths) const;
+    template <class Around>
+    Spectrum through_crossings(const Ray& ray, Crossings& crossings, bool delta, Around around, float distance,
+                               const Wavelengths& wavelengths) const;
     void hold(Vec3d point);
     MaterialAt material_at(std::uint32_t material, float time) const {
         if (const MaterialChange* change = change_of(material))
@@ -237,16 +265,13 @@ class Scene {
         return {&description_.materials[material], 1};
     }
     std::vector<Keyed<Sphere>> spheres() const;
-    Clear clear_for_shadows(const Instance& instance, bool delta_lights) const;
+    Clear clear_for_shadows(std::uint32_t instance, bool delta_lights) const;
     bool has_clear_ = false, has_catchers_ = false;
     bool has_media_ = false, has_bounded_media_ = false;
     const Medium* fog_ = nullptr;
     std::vector<MediaOfInstance> media_;   // per instance; empty: no media
-    struct Solid {
-        std::uint32_t instance;
-        Bounds bounds;
-    };
-    std::vector<Solid> solids_;   // in the order of the instances
+    std::vector<BoundedSolid> solids_;    // in the order of the instances
+    SolidRanks ranks_;
 
     SceneDescription description_;
     std::unique_ptr<Intersector> intersector_;

@@ -1,4 +1,4 @@
-// surroundings.cpp -- the solids around a point, for cameras inside them.
+// surroundings.cpp -- the solids around a path, and around a camera.
 #include <algorithm>
 #include <array>
 
@@ -40,9 +40,69 @@ constexpr std::array<Vec3f, 7> kVotes{{{0.35f, 0.86f, 0.37f}, {-0.61f, 0.23f, 0.
 void Scene::find_solids() {
     for (std::uint32_t i = 0; i < description_.instances.size(); ++i) {
         const Instance& instance = description_.instances[i];
-        const auto keys = keys_of(instance.material);
-        if (std::ranges::any_of(keys, bounds_solid)) solids_.push_back({i, bounds_of(i)});
+        if (std::ranges::any_of(keys_of(instance.material), bounds_solid))
+            solids_.push_back({i, bounds_over_time(description_, instance)});
     }
+    ranks_ = rank_solids(description_, solids_);
+}
+
+SolidOptics Scene::optics_in(std::uint32_t instance, float time, const Wavelengths& wavelengths) const {
+    const MaterialAt now = material_at(records_[instance].material, time);
+    return solid_optics(now, wavelengths);
+}
+
+bool Scene::meet_boundary(const Solids& solids, SurfaceHit& hit, const Wavelengths& wavelengths) const {
+    Solids beyond = solids;   // on the other side, apart from the solid of the boundary
+    cross_coincident(beyond, hit, true);
+    const std::uint32_t here = solids.top(ranks_.of_instance, hit.instance),
+                        there = beyond.top(ranks_.of_instance, hit.instance);
+    const std::uint32_t hides = hit.front ? there : here;   // in place of the solid on its own side of the boundary
+    if (hides != Solids::kNone && rank(hides) > rank(hit.instance)) return false;
+    const std::uint32_t outside = hit.front ? here : there;
+    if (outside != Solids::kNone) {
+        const SolidOptics optics = optics_in(outside, hit.time, wavelengths);
+        hit.outside_ior = optics.ior, hit.outside_disperses = optics.disperses;
+    }
+    return true;
+}
+
+void Scene::cross_boundary(Solids& solids, const SurfaceHit& hit, bool entering) const {
+    entering ? solids.enter(hit.instance) : solids.leave(hit.instance);
+    cross_coincident(solids, hit, entering == hit.front);
+}
+
+/// Crosses the boundaries of other solids at the place of a hit: water that touches its glass. The next ray begins
+/// beyond them. `onward`: from the side of hit.wo to the other.
+void Scene::cross_coincident(Solids& solids, const SurfaceHit& hit, bool onward) const {
+    if (!ranks_.touches[hit.instance]) return;
+    constexpr float kErrors = 16;
+    const float reach = kErrors * hit.error / std::max(std::abs(dot(hit.ng, hit.wo)), 0.05f);
+    const Ray ray{.origin = hit.position + hit.wo * reach, .direction = -hit.wo, .time = hit.time, .t_max = 2 * reach};
+    Crossings crossings(true);
+    intersector_->occluded(ray, &crossings);
+    for (std::uint32_t i = 0; i < crossings.count; ++i) {
+        const RawHit& raw = crossings.hits[i];
+        if (raw.instance == hit.instance || rank(raw.instance) == 0) continue;
+        SurfaceHit other;
+        find_surface(ray, raw, other);
+        other.front == onward ? solids.enter(raw.instance) : solids.leave(raw.instance);
+    }
+}
+
+Interior Scene::interior_in(const Solids& solids, float time, const Wavelengths& wavelengths) const {
+    const std::uint32_t top = solids.top(ranks_.of_instance);
+    if (top != Solids::kNone) {
+        if (has_media_ && media_[top].inside) return medium_on(top, true);
+        return optics_in(top, time, wavelengths).interior;
+    }
+    Interior outside;
+    outside.medium = fog_;
+    return outside;
+}
+
+void Scene::cross_nested(Surroundings& here, const SurfaceHit& hit, bool entering, const Wavelengths& wavelengths) const {
+    cross_boundary(here.solids, hit, entering);
+    here.interior = interior_in(here.solids, hit.time, wavelengths);
 }
 
 std::vector<std::uint32_t> Scene::solids_near(const Box& box) const {
@@ -65,7 +125,7 @@ void Scene::leave_solids(Ray ray, const Use& use) const {
         find_surface(ray, *raw, hit);
         if (has_bounded_media_ && media_[hit.instance].bounds) {
             if (!use(hit, true)) return;
-        } else if (std::ranges::binary_search(solids_, hit.instance, {}, &Solid::instance)) {
+        } else if (std::ranges::binary_search(solids_, hit.instance, {}, &BoundedSolid::instance)) {
             if (hit.front) entered.add(hit.instance);
             else if (!entered.leave(hit.instance) && !use(hit, false)) return;
         }
@@ -75,22 +135,38 @@ void Scene::leave_solids(Ray ray, const Use& use) const {
     }
 }
 
-std::optional<Interior> Scene::around(const Ray& ray, std::span<const std::uint32_t> near,
-                                      const Wavelengths& wavelengths) const {
+std::optional<Surroundings> Scene::around(const Ray& ray, std::span<const std::uint32_t> near,
+                                          const Wavelengths& wavelengths) const {
     const auto holds = [&](std::uint32_t i) { return solids_[i].bounds.meets(ray.origin, ray.origin); };
     if (std::ranges::none_of(near, holds)) return std::nullopt;
-    Interior here;
-    here.medium = fog_;
+    Surroundings here;
+    here.interior.medium = fog_;
     leave_solids(ray, [&](SurfaceHit& hit, bool medium) {
         if (medium) {
-            here = medium_on(hit.instance, !hit.front);
+            if (here.solids.empty()) here.interior = medium_on(hit.instance, !hit.front);
             return false;
         }
+        if (rank(hit.instance) > 0) {
+            here.solids.enter(hit.instance);
+            return true;
+        }
         const MaterialAt now = material(hit);
-        here = interior(shade(now, textures(), hit, wavelengths));
+        if (here.solids.empty()) here.interior = interior(shade(now, textures(), hit, wavelengths));
         return false;
     });
+    if (!here.solids.empty()) here.interior = interior_in(here.solids, ray.time, wavelengths);
     return here;
+}
+
+bool Scene::begins_in_solid(const Ray& ray) const {
+    if (std::ranges::none_of(solids_, [&](const BoundedSolid& s) { return s.bounds.meets(ray.origin, ray.origin); }))
+        return false;
+    bool inside = false;
+    leave_solids(ray, [&](SurfaceHit&, bool medium) {
+        inside = !medium;
+        return medium;
+    });
+    return inside;
 }
 
 std::vector<Scene::Surrounding> Scene::surroundings(Vec3f point, float time) const {

@@ -48,6 +48,16 @@ inline Mesh quad_mesh() {
     return mesh;
 }
 
+/// The cube [-1,1]^3, with outward winding.
+inline Mesh cube_mesh() {
+    Mesh mesh;
+    mesh.name = "cube";
+    mesh.positions = {{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {-1, 1, 1}, {1, 1, 1}};
+    mesh.triangles = {{0, 3, 1}, {0, 2, 3}, {4, 7, 6}, {4, 5, 7}, {0, 5, 4}, {0, 1, 5},
+                      {2, 7, 3}, {2, 6, 7}, {0, 6, 2}, {0, 4, 6}, {1, 7, 5}, {1, 3, 7}};
+    return mesh;
+}
+
 /// The unit ball, an octahedron subdivided `levels` times, with outward winding.
 inline Mesh ball_mesh(int levels) {
     Mesh mesh;

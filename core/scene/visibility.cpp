@@ -1,6 +1,7 @@
 // visibility.cpp -- transmittance of shadow rays through clear surfaces.
 #include <algorithm>
 #include <tuple>
+#include <type_traits>
 
 #include "scene/scene.h"
 
@@ -15,33 +16,59 @@ void stop_before(Ray& ray, float distance) {
     ray.t_max = distance - (1e-4f * distance + 0x1p-19f * largest);
 }
 
+/// Where solids overlap, a ray has Surroundings; elsewhere an Interior suffices.
+template <class Around>
+constexpr bool kNested = std::is_same_v<Around, Surroundings>;
+
+const Interior& interior_of(const Interior& around) { return around; }
+Interior& interior_of(Interior& around) { return around; }
+const Interior& interior_of(const Surroundings& around) { return around.interior; }
+Interior& interior_of(Surroundings& around) { return around.interior; }
+
 }  // namespace
 
-Spectrum Scene::visibility(Ray ray, bool delta, const Interior& medium, const Wavelengths& wavelengths) const {
-    const float distance = ray.t_max;
-    stop_before(ray, distance);
-    if (ray.t_max <= 0) return 1.f;
-    return transmission(ray, distance, delta, medium, wavelengths);
+Spectrum Scene::visibility(const Ray& ray, bool delta, const Interior& medium, const Wavelengths& wavelengths) const {
+    return has_nested() ? to_light(ray, delta, Surroundings{medium, {}}, wavelengths)
+                       : to_light(ray, delta, medium, wavelengths);
+}
+
+Spectrum Scene::visibility_nested(const Ray& ray, bool delta, const Surroundings& here,
+                                  const Wavelengths& wavelengths) const {
+    return to_light(ray, delta, here, wavelengths);
 }
 
 Spectrum Scene::visibility_along(const Ray& ray, const Wavelengths& wavelengths) const {
     if (ray.t_max < 0) return 0.f;
     if (!(ray.t_max > ray.t_min)) return 1.f;
-    return transmission(ray, ray.t_max, false, has_media_ ? medium_around(ray) : Interior{}, wavelengths);
+    const Interior medium = has_media_ ? medium_around(ray) : Interior{};
+    return has_nested() ? transmission(ray, ray.t_max, false, Surroundings{medium, {}}, wavelengths)
+                       : transmission(ray, ray.t_max, false, medium, wavelengths);
 }
 
-Spectrum Scene::transmission(const Ray& ray, float distance, bool delta, const Interior& medium,
+template <class Around>
+Spectrum Scene::to_light(Ray ray, bool delta, const Around& here, const Wavelengths& wavelengths) const {
+    const float distance = ray.t_max;
+    stop_before(ray, distance);
+    if (ray.t_max <= 0) return 1.f;
+    return transmission(ray, distance, delta, here, wavelengths);
+}
+
+template <class Around>
+Spectrum Scene::transmission(const Ray& ray, float distance, bool delta, const Around& here,
                              const Wavelengths& wavelengths) const {
+    const Interior& medium = interior_of(here);
     if (!has_clear_ && !medium.present && !medium.medium) return intersector_->occluded(ray) ? 0.f : 1.f;
-    Crossings crossings(delta);
+    Crossings crossings(delta || kNested<Around>);
     if (intersector_->occluded(ray, &crossings)) return 0.f;
-    return through_crossings(ray, crossings, medium, distance, wavelengths);
+    return through_crossings(ray, crossings, delta, here, distance, wavelengths);
 }
 
 /// Processes crossings in the order in which a path would hit them. Crossings closer than the offset of spawn_ray are
 /// duplicates of the same surface.
-Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
-                                  float distance, const Wavelengths& wavelengths) const {
+template <class Around>
+Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, bool delta, Around around, float distance,
+                                  const Wavelengths& wavelengths) const {
+    Interior& medium = interior_of(around);
     const auto hits = std::span(crossings.hits).first(crossings.count);
     std::ranges::sort(hits, {}, [](const RawHit& h) {
         return std::tuple(h.t, h.instance, h.primitive);
@@ -60,15 +87,24 @@ Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, Interior
             if (transmittance.is_black()) return 0.f;
             continue;
         }
+        if constexpr (kNested<Around>) {
+            if (rank(hit.instance) > 0 && !meet_boundary(around.solids, surface, wavelengths)) {
+                cross_boundary(around.solids, surface, surface.front);
+                if (transmittance.is_black()) return 0.f;
+                continue;
+            }
+        }
         const MaterialAt now = material(surface);
         const Bsdf bsdf = shade(now, textures(), surface, wavelengths);
         std::visit(
             [&](const auto& kind) {
-                const bool bent = kind.bounds_volume() && !crossings.volumes;
+                const bool bent = kind.bounds_volume() && !delta;
                 transmittance *= bent ? Spectrum(0.f) : kind.straight_transmittance(surface.wo);
                 medium = beyond(medium, hit.instance, kind.interior(), kind.bounds_volume(), surface.front);
             },
             bsdf);
+        if constexpr (kNested<Around>)
+            if (rank(hit.instance) > 0) cross_nested(around, surface, surface.front, wavelengths);
         if (transmittance.is_black()) return 0.f;
     }
     const bool finite = distance < std::numeric_limits<float>::infinity();

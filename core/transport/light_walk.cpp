@@ -35,6 +35,9 @@ std::optional<LightWalk> LightWalk::begin(const Scene& scene, const LightSharing
                                                       std::numeric_limits<float>::infinity(), walk.wavelengths_);
         if (walk.flux_.is_black()) return std::nullopt;
     }
+    walk.volume_.may_nest = scene.has_nested();
+    if (scene.has_nested() && (walk.infinite() || !scene.begins_in_solid(walk.ray_)))
+        walk.volume_.where = VolumeState::Where::air;
     walk.start_ = walk.flux_;
     walk.light_camera_ratio_ = sharing.bounced_density(emitted->pdf);
     return walk;
@@ -62,11 +65,18 @@ std::optional<Scene::Hit> LightWalk::meet_visible() {
     }
 }
 
+/// Whether a boundary is within another solid or touches one. Camera paths have the full weight there.
+bool LightWalk::meets_solids(SurfaceHit hit) const {
+    if (hit.front && volume_.where != VolumeState::Where::air) return true;
+    return !scene_->meet_boundary({}, hit, wavelengths_) || hit.outside_ior != 1;
+}
+
 bool LightWalk::meet(std::optional<LightVertex>& vertex) {
     const auto found = scene_->has_media() ? meet_visible() : scene_->intersect(ray_);
     if (!found || found->sphere_light >= 0) return false;
     const SurfaceHit& hit = found->surface;
     if (is_last() && !scene_->has_clear()) return false;
+    if (scene_->rank(hit.instance) > 0 && meets_solids(hit)) return false;
     absorb(hit.t);
     distance_ += hit.t;
     vertex.emplace(*scene_, hit, wavelengths_);

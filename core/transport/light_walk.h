@@ -81,6 +81,7 @@ class LightWalk {
               const EmissionRay& emission, const PathSampler& sampler)
         : scene_(&scene), sharing_(&sharing), settings_(&settings), emission_(emission), sampler_(sampler) {}
     std::optional<Scene::Hit> meet_visible();
+    bool meets_solids(SurfaceHit hit) const;
     void absorb(float length);
     bool is_last() const { return vertices_ == settings_->max_depth; }   // only windows may follow
     bool pass(LightVertex& vertex, const LightStep& step);

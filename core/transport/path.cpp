@@ -55,7 +55,7 @@ class Path : public PathState {
         : PathState{scene, settings, sampler, first_hit, wavelengths}, worlds_(scene) {
         walk.ray = ray;
         walk.last.position = ray.origin;
-        walk.media.interior = interior_at_camera(scene, settings, walk.ray, wavelengths);
+        walk.media.around = surroundings_at_camera(scene, settings, walk.ray, wavelengths);
         walk.light_mis.first_ray = first;
         if (first) path_mis_.emplace(*first);
         if (path_mis_ && path_mis_->open()) walk.light_mis.path_mis = &*path_mis_;
@@ -96,7 +96,7 @@ class Path : public PathState {
         ++rays;
         const bool counts = counts_emission(vertex);
         auto found = scene.intersect(walk.ray);
-        if (walk.media.interior.medium) {
+        if (walk.media.around.interior.medium) {
             const bool last = vertex == settings.max_depth;
             const MediumEvent event = MediumCrossing(*this).cross(found ? found->surface.t : kInfinity, last);
             if (!after_crossing(event, vertex)) return false;
@@ -108,7 +108,7 @@ class Path : public PathState {
     /// Processes a hit on a surface or a sphere light. `counts`: from counts_emission().
     bool arrive(Scene::Hit& found, int vertex, bool counts) {
         SurfaceHit& hit = found.surface;
-        if (walk.media.interior.present) walk.throughput *= walk.media.interior.transmittance(hit.t);
+        if (walk.media.around.interior.present) walk.throughput *= walk.media.around.interior.transmittance(hit.t);
         if (found.sphere_light < 0 && scene.is_invisible(hit.instance)) return pass_boundary(hit);
         if (found.sphere_light >= 0) {
             const auto sphere = std::uint32_t(found.sphere_light);
@@ -117,6 +117,7 @@ class Path : public PathState {
             return false;
         }
         if (!worlds_.meet_surface(*this, hit)) return false;
+        if (scene.rank(hit.instance) > 0 && !meet_boundary(*this, hit)) return pass_boundary(hit);
         const MaterialAt material = scene.material(hit);
         worlds_.show_plate(*this, material, hit);
         if (counts) worlds_.gather_emission(*this, surface_emission(*this, material, hit));
@@ -149,9 +150,9 @@ class Path : public PathState {
         return false;
     }
 
-    /// Passes a window where only the medium changes.
+    /// Passes a window without a surface: the boundary of a medium, or of a solid inside another.
     bool pass_boundary(const SurfaceHit& hit) {
-        walk.media.interior = scene.beyond(walk.media.interior, hit.instance, {}, false, hit.front);
+        pass_unseen(scene, walk.media.around, hit);
         walk.last.window_distance += hit.t;
         const RayCone cone = walk.ray.cone;
         spawn(hit, walk.ray.direction, cone.empty() ? cone : cone.after(hit.t));
@@ -161,7 +162,7 @@ class Path : public PathState {
     /// Adds the light gathered in a medium, and continues from the point where the medium scatters the path.
     bool after_crossing(const MediumEvent& event, int vertex) {
         using Kind = MediumEvent::Kind;
-        const PhaseBsdf phase{walk.media.interior.medium->phase};
+        const PhaseBsdf phase{walk.media.around.interior.medium->phase};
         if (!event.emitted.is_black()) worlds_.gather(*this, event.emitted, walk.hero_only);
         if (event.lamp.direct.weight > 0)
             gather_direct(phase, in_medium(walk.ray, event.lamp.t), event.lamp.direct, event.lamp_throughput, nullptr);
@@ -253,7 +254,7 @@ class Path : public PathState {
         walk.throughput *= sample.weight;
         if (sample.transmitted) {
             walk.eta_squared *= sample.eta * sample.eta;
-            walk.media.interior = interior_after(scene, walk.media.interior, hit, bsdf, sample.wi);
+            leave_along(scene, walk.media.around, hit, bsdf, sample.wi, wavelengths);
             if (sample.specular && !bsdf.bounds_volume()) {
                 walk.last.window_distance += hit.t;
                 return;
@@ -299,12 +300,11 @@ class Path : public PathState {
     void gather_direct(const B& bsdf, const SurfaceHit& hit, const DirectLight& direct,
                        Spectrum throughput, MisVertex* mis_vertex) {
         const LightSample& light = direct.light;
-        const Interior interior = interior_after(scene, walk.media.interior, hit, bsdf, light.wi);
         Ray ray = ray_to_light(hit, light, walk.ray.time);
         const auto visibility = [&](bool without_objects) {
             ++rays;
             ray.without_objects = without_objects;
-            return scene.visibility(ray, light.delta, interior, wavelengths);
+            return visibility_of(*this, hit, bsdf, light, ray);
         };
         const float camera_weight =
             mis_vertex ? walk.light_mis.path_mis->weight_of_sample(scene, *mis_vertex, light, wavelengths) : 1;
@@ -334,14 +334,12 @@ Sight sight_of(Path<Worlds>&& path, std::uint64_t* ray_count) {
 }  // namespace
 
 Radiance radiance(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
-                  const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
-                  const FirstRay* first) {
+                  const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count, const FirstRay* first) {
     return trace_camera_ray(scene, ray, wavelengths, sampler, settings, hit, ray_count, first).light;
 }
 
 Sight trace_camera_ray(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
-                       const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
-                       const FirstRay* first) {
+                       const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count, const FirstRay* first) {
     if (scene.has_catchers() || settings.plate)
         return sight_of(Path<TwoWorlds>(scene, settings, sampler, hit, wavelengths, ray, first), ray_count);
     return sight_of(Path<OneWorld>(scene, settings, sampler, hit, wavelengths, ray, first), ray_count);

@@ -1,30 +1,71 @@
-// interior.h -- the volume or medium around a ray that leaves a vertex of a camera path. Scene::beyond has the rule for
-// each boundary. It is also called for boundaries without a material (Path::pass_boundary), for light paths
-// (LightWalk), and for shadow rays (Scene::visibility).
+// interior.h -- the solids and media around a ray that leaves a vertex of a camera path. Scene::pass has the rule for
+// each boundary. Boundaries without a material (Path::pass_boundary), hidden ones (Path::pass_hidden), light paths
+// (LightWalk) and shadow rays (Scene::visibility) follow the same rules.
 #pragma once
 #include "material/bsdf_kind.h"
 #include "scene/scene.h"
-#include "transport/walk/path_settings.h"
+#include "transport/walk/path_state.h"
 
 namespace dg {
 
-/// The solid or medium around the origin of a camera ray.
-inline Interior interior_at_camera(const Scene& scene, const PathSettings& settings, const Ray& ray,
-                                   const Wavelengths& wavelengths) {
+/// The solids and media around the origin of a camera ray.
+inline Surroundings surroundings_at_camera(const Scene& scene, const PathSettings& settings, const Ray& ray,
+                                           const Wavelengths& wavelengths) {
     if (!settings.solids_near.empty())
-        if (const auto solid = scene.around(ray, settings.solids_near, wavelengths)) return *solid;
-    return scene.has_media() ? scene.medium_around(ray) : Interior{};
+        if (const auto solids = scene.around(ray, settings.solids_near, wavelengths)) return *solids;
+    return {scene.has_media() ? scene.medium_around(ray) : Interior{}, {}};
 }
+
+/// Whether a surface is at a hit on a ranked solid: none inside a solid of a higher rank. Sets the index outside it.
+/// Light paths end in nested solids, so MIS with them ends there.
+inline bool meet_boundary(PathState& path, SurfaceHit& hit) {
+    const Solids& solids = path.walk.media.around.solids;
+    const bool met = path.scene.meet_boundary(solids, hit, path.wavelengths);
+    if (!met || hit.outside_ior != 1 || path.scene.in_other(solids, hit.instance))
+        path.walk.light_mis.path_mis = nullptr;
+    return met;
+}
+
+/// Crosses a boundary that has no surface: of a medium alone, or of a solid inside another.
+inline void pass_unseen(const Scene& scene, Surroundings& around, const SurfaceHit& hit) {
+    if (scene.is_invisible(hit.instance))
+        around.interior = scene.beyond(around.interior, hit.instance, {}, false, hit.front);
+    else scene.cross_boundary(around.solids, hit, hit.front);
+}
+
+/// Whether the ray that leaves `hit` along `wi` is on the side to which hit.wo does not point.
+inline bool is_transmitted(const SurfaceHit& hit, Vec3f wi) { return (dot(wi, hit.ng) > 0) != hit.front; }
 
 /// Interior around the ray that leaves `hit` along `wi`. `here`: interior on the side from which the path arrived.
 template <Scatters B>
-Interior interior_after(const Scene& scene, const Interior& here, const SurfaceHit& hit, const B& bsdf,
-                        Vec3f wi) {
+Interior interior_after(const Scene& scene, const Interior& here, const SurfaceHit& hit, const B& bsdf, Vec3f wi) {
     if constexpr (PhaseKind<B>) return here;
-    const float side = dot(wi, hit.ng);
-    const bool transmitted = (side > 0) != hit.front;
-    if (!transmitted) return here;
-    return scene.beyond(here, hit.instance, bsdf.interior(), bsdf.bounds_volume(), side < 0);
+    if (!is_transmitted(hit, wi)) return here;
+    return scene.beyond(here, hit.instance, bsdf.interior(), bsdf.bounds_volume(), hit.front);
+}
+
+/// Changes the surroundings to those of the ray that leaves `hit` along `wi`. `here`: on the side from which the path
+/// arrived.
+template <Scatters B>
+void leave_along(const Scene& scene, Surroundings& here, const SurfaceHit& hit, const B& bsdf, Vec3f wi,
+                 const Wavelengths& wavelengths) {
+    if constexpr (PhaseKind<B>) return;
+    if (scene.rank(hit.instance) == 0) here.interior = interior_after(scene, here.interior, hit, bsdf, wi);
+    else if (is_transmitted(hit, wi)) scene.cross_nested(here, hit, hit.front, wavelengths);
+}
+
+/// Visibility of a light sample from a hit. `ray`: from ray_to_light().
+template <Scatters B>
+Spectrum visibility_of(const PathState& path, const SurfaceHit& hit, const B& bsdf, const LightSample& light,
+                       const Ray& ray) {
+    const Scene& scene = path.scene;
+    if (scene.has_nested()) {
+        Surroundings around = path.walk.media.around;
+        leave_along(scene, around, hit, bsdf, light.wi, path.wavelengths);
+        return scene.visibility_nested(ray, light.delta, around, path.wavelengths);
+    }
+    const Interior interior = interior_after(scene, path.walk.media.around.interior, hit, bsdf, light.wi);
+    return scene.visibility(ray, light.delta, interior, path.wavelengths);
 }
 
 }  // namespace dg

@@ -30,16 +30,6 @@ std::shared_ptr<const Medium> on_grid(Medium m, bool uneven = false) {
     return std::make_shared<const Medium>(std::move(m));
 }
 
-Mesh cube_mesh() {
-    Mesh cube;
-    std::vector<Vec3f> corners;
-    for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f});
-    cube.positions = corners;
-    cube.triangles = {{0, 3, 1}, {0, 2, 3}, {4, 7, 6}, {4, 5, 7}, {0, 5, 4}, {0, 1, 5},
-                      {2, 7, 3}, {2, 6, 7}, {0, 6, 2}, {0, 4, 6}, {1, 7, 5}, {1, 3, 7}};
-    return cube;
-}
-
 /// Adds a closed mesh as an invisible boundary of a medium.
 void fill(SceneDescription& d, Mesh mesh, std::shared_ptr<const Medium> inside) {
     add(d, std::move(mesh), {"boundary", DiffuseMaterial{}});

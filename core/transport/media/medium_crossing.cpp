@@ -26,7 +26,7 @@ constexpr float kLeastLit = 0.1f;
 MediumCrossing::MediumCrossing(PathState& path)
     : path_(path),
       walk_(path.walk),
-      medium_(*path.walk.media.interior.medium),
+      medium_(*path.walk.media.around.interior.medium),
       coefficients_(medium_.at(path.wavelengths)) {}
 
 MediumEvent MediumCrossing::cross(float t, bool last) {
@@ -114,7 +114,7 @@ bool MediumCrossing::survives_dark(Vec3f from, Vec3f at) {
 }
 
 void MediumCrossing::cross_grid(float t, bool last, MediumEvent& event) {
-    const GridRay ray = path_.scene.grid_ray(walk_.media.interior, walk_.ray);
+    const GridRay ray = path_.scene.grid_ray(walk_.media.around.interior, walk_.ray);
     const RayRandom random(walk_.ray.origin, walk_.ray.direction, path_.sampler.next_1d());
     const double begin = double(walk_.ray.t_min), end = double(t);
     if (coefficients_.scattering.is_black() && coefficients_.emission.is_black()) {

@@ -12,10 +12,12 @@ struct VolumeState {
     enum class Where { air, inside, unknown } where = Where::air;
     Interior interior{};
 
+    bool may_nest = false;   // the scene has overlapping solids: an emitter may be in one that holds others
+
     /// Crosses a boundary. False: volumes are nested or overlap.
     bool cross(const Interior& beyond, bool entering) {
         if (entering) {
-            if (where == Where::inside) return false;
+            if (where == Where::inside || (may_nest && where == Where::unknown)) return false;
             where = Where::inside;
             interior = beyond;
             return true;

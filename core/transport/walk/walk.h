@@ -4,7 +4,7 @@
 // with a new ray, but windows are not counted as vertices.
 #pragma once
 #include "geometry/ray.h"
-#include "material/bsdf_sample.h"
+#include "scene/solids.h"
 #include "spectrum/sampled_spectrum.h"
 #include "transport/sharing/light_path_mis.h"
 
@@ -24,7 +24,7 @@ struct LastVertex {
 
 /// State of a path inside volumes and participating media.
 struct MediaState {
-    Interior interior;       // fills the space around the path
+    Surroundings around;     // solids and media around the path
     float brightest = 0;     // highest illuminance by lamps along the path inside media, lux
     Spectrum lanes{1.f};     // relative probability of each wavelength to have drawn the path (medium/segment.h)
 };

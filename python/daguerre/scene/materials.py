@@ -42,6 +42,11 @@ __all__ = [
     "check_parts",
 ]
 
+#: Kinds of nesting that are no priority.
+CONTAINED, LITERAL = "contained", "literal"
+#: Largest priority of a solid.
+MAX_PRIORITY = 1000
+
 Kind = Diffuse | Conductor | Dielectric | Coated | Mix | Boundary | Gltf
 #: Names of the kinds, for messages.
 KINDS = "Diffuse, Conductor, Dielectric, Coated, Mix, Boundary or Gltf"
@@ -68,6 +73,10 @@ class Material(BriefRecord):
         interior: Medium inside a closed mesh, instead of the kind's absorption; None: no medium.
         exterior: Medium outside of the mesh, such as the interior of a mesh around it; None: the
             scene's fog.
+        nesting: Which of two overlapping solids is there: ``"contained"``, the inner one, else the
+            later one in the scene; a whole number, the one with the higher priority (contained:
+            0); ``"literal"``: the surface is an interface between both sides as given, for files of
+            pbrt and Mitsuba.
     """
 
     kind: Kind = field(default_factory=Diffuse)
@@ -83,6 +92,7 @@ class Material(BriefRecord):
     emission_texture: TextureSlot | None = None
     interior: Medium | None = None
     exterior: Medium | None = None
+    nesting: str | int = CONTAINED
 
 
 def check_material(material: Material, where: str) -> None:
@@ -105,6 +115,7 @@ def check_material(material: Material, where: str) -> None:
         check_profile(material.profile, where)
     check_surface(kind, where)
     check_media(material.interior, material.exterior, where)
+    _check_nesting(material.nesting, where)
     if isinstance(kind, Boundary) and any(material.emission):
         raise InputError(
             f"{where}: emission: a boundary cannot emit light, got {short(material.emission)}"
@@ -116,6 +127,16 @@ def check_material(material: Material, where: str) -> None:
             Boundary: "a boundary has none",
         }[type(kind)]
         raise InputError(f"{where}: normal_texture: {owner}")
+
+
+def _check_nesting(nesting: object, where: str) -> None:
+    """Checks how solids of a material nest."""
+    whole = isinstance(nesting, int) and not isinstance(nesting, bool)
+    if not (whole and abs(nesting) <= MAX_PRIORITY) and nesting not in (CONTAINED, LITERAL):  # type: ignore[arg-type]
+        raise InputError(
+            f"{where}: nesting: wanted {CONTAINED!r}, {LITERAL!r} or a whole number within "
+            f"{MAX_PRIORITY}, got {short(nesting)}"
+        )
 
 
 def bounds_media(material: Material) -> bool:

@@ -13,7 +13,7 @@ from daguerre.scene.materials import Gltf, Kind, Material, Spectrum, TextureSlot
 _COMMON = tuple(
     field.name
     for field in dataclasses.fields(Material)
-    if field.name not in ("kind", "name", "profile", "interior", "exterior")
+    if field.name not in ("kind", "name", "profile", "interior", "exterior", "nesting")
 )
 
 

@@ -17,6 +17,7 @@ from daguerre.scene.parts import Curves
 from daguerre.scene.scene import Scene
 
 from .media import add_media
+from .nesting import add_nesting, overlap_notes
 from .origin import beyond, coarse, local_origin, may_be_far
 from .scene_motion import MovingParts
 from .shading import Profiles, add_environment, add_lights, add_materials
@@ -51,9 +52,12 @@ def build(
         moving = MovingParts(scene, seen, notes)
         _add_all(builder, scene, moving)
         add_media(builder, scene, notes)
+        add_nesting(builder, scene)
         moving.finish()
         free = memory.left_bytes()
-        return builder.build(free_memory=0 if free is None else max(free, 1))
+        made = builder.build(free_memory=0 if free is None else max(free, 1))
+        notes += overlap_notes(scene, made)
+        return made
 
 
 def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: MovingParts) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from daguerre.scene.materials import Color, Diffuse, Gltf, Material, Mix, TextureSlot
+from daguerre.scene.materials import LITERAL, Color, Diffuse, Gltf, Material, Mix, TextureSlot
 from daguerre.scene.media import Medium
 from daguerre.shading.arithmetic import Arithmetic
 from daguerre.shading.channels import UnsupportedError, fit
@@ -85,6 +85,7 @@ class Materials:
             two_sided=look.two_sided,
             interior=sides.interior,
             exterior=sides.exterior,
+            nesting=LITERAL,
         )
         slot = self._normals(look, chart)
         if slot is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields, is_dataclass, replace
 
-from daguerre.scene.materials import Boundary, Diffuse, Kind, Material, TextureSlot
+from daguerre.scene.materials import LITERAL, Boundary, Diffuse, Kind, Material, TextureSlot
 from daguerre.scene.media import Medium
 from daguerre.scene.scene import Scene
 
@@ -119,6 +119,7 @@ class Looks:
             normal_texture=look.normals or look.bump,
             interior=inside,
             exterior=outside,
+            nesting=LITERAL,
         )
 
     def _glow(self, emission: Emission) -> TextureSlot | None:

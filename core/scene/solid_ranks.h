@@ -1,0 +1,38 @@
+// solid_ranks.h -- which of two overlapping solids is there, found when a scene is built.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "geometry/bounds.h"
+
+namespace dg {
+
+struct Instance;
+struct SceneDescription;
+
+/// A refracting solid, and its bounds over all times.
+struct BoundedSolid {
+    std::uint32_t instance;
+    Bounds bounds;
+};
+
+/// Two solids that overlap, and why the higher is there.
+struct Overlap {
+    std::uint32_t lower, higher;
+    const char* by;
+};
+
+/// Ranks of solids by priority, then by containment, then in the order of the file.
+struct SolidRanks {
+    std::vector<std::uint32_t> of_instance;   // 0: overlaps no other solid; empty: no solids overlap
+    std::vector<char> touches;                // per instance: its boundary may be at the place of another
+    std::vector<Overlap> overlaps;            // the first ones
+    int deepest = 0;                          // the most solids with boxes that hold each other
+};
+
+/// A box around all places of an instance, by the corners of the mesh's own box.
+Bounds bounds_over_time(const SceneDescription& scene, const Instance& instance);
+
+SolidRanks rank_solids(const SceneDescription& scene, const std::vector<BoundedSolid>& solids);
+
+}  // namespace dg
