@@ -148,6 +148,8 @@ def test_no_class_but_values_of_ours_is_made(name: str) -> None:
         {"root": {"code": "1"}},
         {"root": {"array": 0}, "arrays": [["<f8", [1 << 40], None]]},
         {"root": {"array": 0}, "arrays": [["|O", [1], None]]},
+        {"root": {"array": 0}, "arrays": [[",", [1], None]]},
+        {"root": {"array": 0}, "arrays": [["<f8,<f8", [0], None]]},
         {"root": {"array": 0}, "arrays": [["<f8", [-1], None]]},
         {"parts": 3, "root": {"part": 0}},
         {"root": {"array": 0}, "arrays": [["<f8", [2], "unknown"]]},

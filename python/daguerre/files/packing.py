@@ -22,6 +22,7 @@ import hashlib
 import importlib
 import json
 import math
+import re
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -38,7 +39,8 @@ from daguerre.files.json_item import Item, short
 from daguerre.files.value import Value
 
 _OURS = "daguerre."
-_KINDS = "biufc?"
+#: A type of numbers, as ``numpy.dtype.str`` writes it. NumPy also evaluates other texts.
+_TYPE = re.compile(r"[<>|][biufc]\d{1,2}")
 #: Size from which an array travels apart, bytes.
 LARGE = 1 << 16
 #: Arrays begin at multiples of this, bytes.
@@ -158,9 +160,9 @@ def _arrays(
     """
     found, begin = [], 0
     for text, shape, name in facts:
+        if not _TYPE.fullmatch(text):
+            raise ValueError(f"an array of {short(text)}")
         kind = np.dtype(text)
-        if kind.kind not in _KINDS:
-            raise ValueError(f"an array of {text}")
         if min(shape, default=0) < 0:
             raise ValueError("an array of negative size")
         count = math.prod(shape)
@@ -215,7 +217,7 @@ class _Writer:
         return self._numbers[id(value)]
 
     def _array(self, array: NDArray[Any]) -> int:
-        if array.dtype.kind not in _KINDS:
+        if not _TYPE.fullmatch(array.dtype.str):
             raise UsageError(f"packing: wanted an array of numbers, got an array of {array.dtype}")
         plain, name = np.ascontiguousarray(array).reshape(array.shape), None
         if plain.nbytes < self._least:
