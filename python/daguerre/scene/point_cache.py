@@ -44,12 +44,13 @@ class PointCache(Value):
         points = optional_array(self.positions.at(time_s), self.where, "positions", 3, count)
         assert points is not None
         check_coordinates(points, self.where)
-        normals, tangents = self.rest.normals, self.rest.tangents
-        turn = None if normals is None else _Turn(self._faces, self._smooth(points))
-        if self.normals is not None:
-            normals = optional_array(self.normals.at(time_s), self.where, "normals", 3, count)
-        elif turn is not None and normals is not None:
+        normals, tangents, turn = self.rest.normals, self.rest.tangents, None
+        if normals is not None:
+            turn = _Turn(self._faces, self._smooth(points))
             normals = turn.of(normals)
+        if self.normals is not None:
+            given = optional_array(self.normals.at(time_s), self.where, "normals", 3, count)
+            normals = _unit(given, normals)
         if turn is not None and tangents is not None:
             turned = turn.of(tangents[:, :3])
             tangents = np.concatenate([turned, tangents[:, 3:]], axis=1)
@@ -80,6 +81,15 @@ class PointCache(Value):
             np.add.at(sums, self._corners[self.triangles[:, k]], faces)
         lengths = np.linalg.norm(sums, axis=1, keepdims=True)
         return np.asarray((sums / np.where(lengths > 0, lengths, 1))[self._corners])
+
+
+def _unit(normals: FloatArray | None, others: FloatArray | None) -> FloatArray | None:
+    """Normalizes normals between keys; those of length 0 become ``others``."""
+    if normals is None:
+        return None
+    lengths = np.linalg.norm(normals.astype(np.float64), axis=1, keepdims=True)
+    found = np.asarray(normals / np.where(lengths > 0, lengths, 1), np.float32)
+    return found if others is None else np.where(lengths > 0, found, others)
 
 
 class _Turn:

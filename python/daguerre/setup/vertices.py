@@ -17,6 +17,9 @@ MAX_STEPS = 129
 MAX_STEP_VERTICES = 1 << 24
 # Breaks that are looked at.
 _MAX_BREAKS = 64
+#: Bound of the angle between normals and those interpolated from steps, rad, and the share of
+#: vertices that may exceed it, as normals at folds jump.
+_NORMAL_BOUND, _FOLDS = 2e-3, 1e-3
 
 
 def resample_vertices(
@@ -83,10 +86,22 @@ class _Grid:
             a, b = _points(self.at(left / count)), _points(self.at((left + 1) / count))
             s = check * count - left
             dyadic = s == 0.5  # a step of twice as many
-            value = _points(self.at(check) if dyadic else self.once(check))
-            if np.linalg.norm(value - (1 - s) * a - s * b, axis=1).max() > limit:
+            found = self.at(check) if dyadic else self.once(check)
+            if np.linalg.norm(_points(found) - (1 - s) * a - s * b, axis=1).max() > limit:
+                return False
+            if not self._turns_evenly(found, left / count, (left + 1) / count, s):
                 return False
         return True
+
+    def _turns_evenly(self, found: Vertices, begin: float, end: float, share: float) -> bool:
+        """Whether normals lie within the bound of those between two steps."""
+        a, b = self.at(begin).normals, self.at(end).normals
+        if found.normals is None or a is None or b is None:
+            return True
+        between = (1 - share) * a + share * b
+        lengths = np.linalg.norm(between, axis=1, keepdims=True)
+        off = found.normals - between / np.where(lengths > 0, lengths, 1)
+        return bool(np.mean(np.linalg.norm(off, axis=1) > _NORMAL_BOUND) <= _FOLDS)
 
 
 def _points(vertices: Vertices) -> NDArray[np.float64]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -196,13 +197,26 @@ def test_keys_that_are_all_alike_move_nothing(tmp_path):
     assert scene.instances[0].transform[:3, 3].tolist() == [1, 2, 3]
 
 
+class Still:
+    """Vertices over time with the normals of their beginning."""
+
+    def __init__(self, moving):
+        self._moving, self.breaks = moving, moving.breaks
+
+    def at(self, time_s):
+        return replace(self._moving.at(time_s), normals=self._moving.at(0).normals)
+
+
 def test_meshes_that_morph_apart_are_two_meshes(tmp_path):
     scene = gltf.read(morphing().glb(tmp_path / "a.glb"))
     assert scene.meshes[0].positions.tolist() == scene.meshes[2].positions.tolist()
     assert [i.mesh for i in scene.instances] == [0, 1, 2]
     assert scene.motion.meshes.keys() == {0, 1}
-    assert len(resample_vertices(scene.motion.meshes[0], 0, 1)[0]) == 2
-    assert len(resample_vertices(scene.motion.meshes[0], 0.5, 1.5)[0]) == 3
+    for interval, count in (((0, 1), 2), ((0.5, 1.5), 3)):
+        moving = Still(scene.motion.meshes[0])
+        assert len(resample_vertices(moving, *interval)[0]) == count
+        # Normals between two of other lengths turn unevenly.
+        assert len(resample_vertices(scene.motion.meshes[0], *interval)[0]) == 9
 
 
 def test_what_blinks(tmp_path):

@@ -17,12 +17,13 @@ from daguerre.files.notes import Notes
 from daguerre.motion.values import Composite, Dynamic, is_dynamic
 from daguerre.scene.motion import Vertices
 from daguerre.scene.over_time.points import ChosenOverTime
-from daguerre.scene.over_time.surfaces import Array, DrawnPolygons, LimitOverTime, Primvar
+from daguerre.scene.over_time.surfaces import Array, DrawnPolygons, LimitOverTime
 from daguerre.scene.point_cache import PointCache
 from daguerre.scene.polygons import triangulate, weld
 from daguerre.scene.scene import Scene
 
-from .primvars import as_rows, note_length, read_primvar
+from .normals import Normals, read_normals
+from .primvars import note_length, read_primvar
 from .topology import read_faces, surface_of
 from .values import Clock
 
@@ -65,6 +66,7 @@ class Shape:
         flipped: Whether the polygons are left-handed.
         begun: Positions and normals of the surface's vertices at the scene's time.
         rest: Points before a skin moved them, to which the normals of the file belong; or None.
+        normals: Normals of the file; None: the surface is smooth by nature, or flat.
     """
 
     prim: Usd.Prim
@@ -73,6 +75,7 @@ class Shape:
     flipped: bool
     begun: Future[tuple[Array, Array | None]]
     rest: Array | None
+    normals: Normals | None
 
 
 #: Points of a mesh, constant or over time, and the same before a skin moved them.
@@ -155,7 +158,9 @@ class Meshes:
                 notes.add("a mesh whose faces change over time keeps them as at the scene's time")
                 break
         rest = None if before is points else np.asarray(_now(before, self._clock), np.float32)
-        return Shape(prim, points, surface, flipped, self._begun(surface, here), rest)
+        begun = self._begun(surface, here)
+        normals = None if surface.smooth else read_normals(prim, surface, self._clock, notes)
+        return Shape(prim, points, surface, flipped, begun, rest, normals)
 
     def _begun(self, surface: DrawnPolygons, points: Array) -> Future[tuple[Array, Array | None]]:
         """Points of a surface; points of a smooth surface are computed in a thread."""
@@ -194,14 +199,15 @@ class Meshes:
             given["normals"] = freeze_in_place(turned.take(origins, axis=0))
         points = freeze_in_place(positions.take(origins, axis=0))
         made = Vertices(points, **{n: given.get(n) for n in _ATTRIBUTES})
-        return self._store(shape, made, freeze_in_place(indices), origins)
+        return self._store(shape, made, freeze_in_place(indices), first)
 
     def _store(
-        self, shape: Shape, made: Vertices, indices: NDArray[Any], origins: NDArray[np.int64]
+        self, shape: Shape, made: Vertices, indices: NDArray[Any], first: NDArray[np.int64]
     ) -> int:
+        origins = shape.surface.vertices[first]
         name = str(shape.prim.GetPath())
-        given = {n: getattr(made, n) for n in _ATTRIBUTES}
-        points = made.positions
+        given: dict[str, Any] = {n: getattr(made, n) for n in _ATTRIBUTES}
+        points, turning = made.positions, shape.normals
         smooth, moves = shape.surface.smooth, is_dynamic(shape.points)
         moving: Any = shape.points
         motion: Dynamic | None = None
@@ -217,6 +223,9 @@ class Meshes:
             else:
                 posed = PointCache(Composite(points), None, rest, indices.astype(np.uint32), name)
                 given["normals"] = posed.at(self._clock.time).normals
+        elif turning is not None and turning.moving is not None:
+            assert turning.rows is not None
+            given["normals"] = ChosenOverTime(turning.moving, turning.rows[first])
         try:
             return self._scene.add_mesh(
                 points, indices, steps=steps, motion=motion, name=name, **given
@@ -224,11 +233,12 @@ class Meshes:
         except InputError as error:
             raise InputError(f"{self._clock.file}: {name}: {error}") from None
 
-    def _attributes(self, shape: Shape, choice: Choice) -> Mapping[str, Array]:
+    def _attributes(self, shape: Shape, choice: Choice) -> Mapping[str, NDArray[Any]]:
         """Values at the corners of the polygons, by attribute of a mesh."""
-        found: dict[str, Array | None] = {}
-        if not shape.surface.smooth:
-            found["normals"] = self._normals(shape)
+        found: dict[str, NDArray[Any] | None] = {}
+        if shape.normals is not None:
+            found["normals"] = shape.normals.now
+            found["alike"] = shape.normals.alike
         for attribute, name in zip(("uv", "uv1"), choice.uv_sets, strict=False):
             found[attribute] = _flipped(self._corners(shape, name, 2))
         if choice.colored:
@@ -245,23 +255,6 @@ class Meshes:
         if found is None:
             note_length(name, self._notes)
         return found
-
-    def _normals(self, shape: Shape) -> Array | None:
-        found = self._corners(shape, "normals", 3)
-        if found is None:
-            mesh = UsdGeom.Mesh(shape.prim)
-            rows = as_rows(mesh.GetNormalsAttr().Get(self._clock.code), 3)
-            if rows is None or not len(rows):
-                return None
-            found = shape.surface.corners(Primvar(rows, str(mesh.GetNormalsInterpolation())))
-            if found is None:
-                note_length("normals", self._notes)
-                return None
-        lengths = np.linalg.norm(found, axis=1, keepdims=True)
-        if (lengths <= 1e-20).any():
-            self._notes.add("normals of length 0: the mesh is flat")
-            return None
-        return np.asarray(found / lengths, np.float32)
 
     def _colors(self, shape: Shape) -> Array | None:
         color = self._corners(shape, "displayColor", 3)
