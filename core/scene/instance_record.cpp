@@ -63,13 +63,12 @@ void set_tangent(const InstanceRecord& r, const Placement& place, Corners t, flo
     Vec3f tangent{};
     hit.tangent_sign = 1;
     if (r.tangents) {
-        const auto* now = r.tangents + place.first_vertex;
-        const auto &a = now[t.a], &b = now[t.b], &c = now[t.c];
-        const Vec3d local{a[0] * w + b[0] * u + c[0] * v, a[1] * w + b[1] * u + c[1] * v,
-                          a[2] * w + b[2] * u + c[2] * v};
-        tangent = to_float(place.world_from_local.vector(local));
+        const Vec3f local =
+            r.tangent(place, t.a) * w + r.tangent(place, t.b) * u + r.tangent(place, t.c) * v;
+        tangent = to_float(place.world_from_local.vector(to_double(local)));
         // Mirroring flips the cross product of normal and tangent.
-        hit.tangent_sign = (a[3] < 0) != place.mirrored ? -1.f : 1.f;
+        const bool turned = r.tangents[place.first_vertex + t.a][3] < 0;
+        hit.tangent_sign = turned != place.mirrored ? -1.f : 1.f;
     } else if (r.tangent_uv) {
         const UvFrame frame = uv_frame(r, place, t);
         tangent = frame.along_u;

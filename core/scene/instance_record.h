@@ -61,10 +61,21 @@ struct InstanceRecord {
         const Vec3d a = to_double(*now), b = to_double(now[vertex_count]);
         return a * (1 - double(p.step_share)) + b * double(p.step_share);
     }
+    /// Unit normal in the instance's space, also between steps.
     Vec3f normal(const Placement& p, std::uint32_t vertex) const {
         const Vec3f* now = normals + p.first_vertex + vertex;
         if (p.step_share == 0) return *now;
-        return *now * (1 - p.step_share) + now[vertex_count] * p.step_share;
+        const Vec3f mixed = *now * (1 - p.step_share) + now[vertex_count] * p.step_share;
+        const float l2 = length_squared(mixed);
+        return l2 > 1e-30f ? mixed * (1 / std::sqrt(l2)) : *now;
+    }
+
+    /// Tangent in the instance's space, not normalized.
+    Vec3f tangent(const Placement& p, std::uint32_t vertex) const {
+        const auto* now = tangents + p.first_vertex + vertex;
+        const auto vector = [](const std::array<float, 4>& t) { return Vec3f{t[0], t[1], t[2]}; };
+        if (p.step_share == 0) return vector(*now);
+        return vector(*now) * (1 - p.step_share) + vector(now[vertex_count]) * p.step_share;
     }
 
     /// Placement at a time, without a copy for static instances; otherwise stored in `made`.

@@ -135,7 +135,7 @@ SceneDescription frozen(const SceneDescription& moving, float time) {
     std::vector<Vec3f> positions, normals;
     for (std::size_t i = step * n; i < (step + 1) * n; ++i) {
         positions.push_back(mesh.positions[i] * (1 - s) + mesh.positions[i + n] * s);
-        normals.push_back(mesh.normals[i] * (1 - s) + mesh.normals[i + n] * s);
+        normals.push_back(normalize(mesh.normals[i] * (1 - s) + mesh.normals[i + n] * s));
     }
     mesh.positions = std::move(positions);
     mesh.normals = std::move(normals);
@@ -186,6 +186,42 @@ TEST_CASE("a mesh that deforms is met in its shape at the time of the ray") {
             CAPTURE(kind);
             CHECK(met > 400);
             CHECK(different <= 3);
+        }
+    }
+}
+
+TEST_CASE("normals of vertices are unit vectors between steps, and tangents turn between them") {
+    GltfMaterial brushed;
+    brushed.anisotropy.strength = 1;
+    SceneDescription d = describe(quad_mesh(), brushed);
+    Mesh& mesh = d.meshes[0];
+    const std::size_t n = mesh.positions.size();
+    // Some vertices turn by 90 degrees, the others stay.
+    std::vector<Vec3f> positions, normals(2 * n, {0, 0, 1});
+    normals[n] = normals[n + 1] = normalize(Vec3f{1, 0, 1e-3f});
+    std::vector<std::array<float, 4>> tangents(2 * n, {0, 1, 0, 1});
+    for (std::size_t i = 0; i < 2 * n; ++i) {
+        positions.push_back(mesh.positions[i % n]);
+        if (i >= n) tangents[i] = {1, 0, 0, 1};
+    }
+    mesh.positions = std::move(positions);
+    mesh.normals = std::move(normals);
+    mesh.tangents = std::move(tangents);
+    mesh.steps = 2;
+    d.interval = {2, 4};
+    const auto moving = Scene::build(d);
+    for (const float time : {0.f, 0.25f, 0.5f, 0.8f, 1.f}) {
+        CAPTURE(time);
+        SceneDescription then = frozen(d, time);
+        const float to_x = time, to_y = 1 - time;
+        then.meshes[0].tangents = std::vector<std::array<float, 4>>(n, {to_x, to_y, 0, 1});
+        const auto still = Scene::build(then);
+        for (const Vec3f from : {Vec3f{0.3f, 0.1f, 7}, Vec3f{-0.5f, 0.6f, 7}}) {
+            Ray ray = test_ray(from, {0, 0, -1});
+            ray.time = time;
+            const SurfaceHit a = moving->intersect(ray)->surface, b = still->intersect(ray)->surface;
+            CHECK(length(a.ns - b.ns) < 1e-5f);
+            CHECK(length(a.tangent - b.tangent) < 1e-5f);
         }
     }
 }
