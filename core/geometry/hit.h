@@ -1,5 +1,6 @@
 // hit.h -- surface interaction with all inputs of shading, in world space.
 #pragma once
+#include <cmath>
 #include <cstdint>
 
 #include "math/vec.h"
@@ -30,10 +31,29 @@ struct SurfaceHit {
     std::uint32_t instance = 0, primitive = 0;
     bool front = true;  // dot(ng, wo) > 0
     bool outside_disperses = false;   // the solid outside the surface disperses light
+    bool smooth = false;  // the vertex normals differ and the material only reflects (scene/smooth_surface.h)
     float choice = 0;   // uniform number in [0, 1) that selects the component of a mixture
     float outside_ior = 1;   // index outside the surface, for the hero; other than 1 within another solid
     float error =
         0;  // m; offset of rays that leave the surface (scaled to the magnitude of position)
+    float barycentric[2];  // of the second and third vertex; set if smooth, like on_mesh
+    float on_mesh[3];      // m; position before it was moved to the smooth surface
+
+    /// The point that the ray has hit.
+    Vec3f met() const { return smooth ? Vec3f{on_mesh[0], on_mesh[1], on_mesh[2]} : position; }
 };
+
+/// Replaces both normals by the normal of the smooth surface. Where that faces away from wo, by the nearest that does not.
+inline void use_smooth_normal(SurfaceHit& hit) {
+    const float g = dot(hit.ng, hit.wo), side = std::copysign(1.f, g), least = 0.1f * std::abs(g);
+    const float c = side * dot(hit.ns, hit.wo);
+    if (c < least) {
+        const Vec3f across = hit.ns * side - hit.wo * c;
+        const float l2 = length_squared(across);
+        if (!(l2 > 1e-8f)) return;
+        hit.ns = (across * std::sqrt((1 - least * least) / l2) + hit.wo * least) * side;
+    }
+    hit.ng = hit.ns;
+}
 
 }  // namespace dg

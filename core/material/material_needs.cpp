@@ -55,6 +55,16 @@ int frame_set(const GltfMaterial& m) {
     return m.anisotropy.texture.used() ? m.anisotropy.texture.uv_set : 0;
 }
 
+bool reflects(const DiffuseMaterial& m) { return m.transmittance.is_black(); }
+bool reflects(const ConductorMaterial&) { return true; }
+bool reflects(const DielectricMaterial&) { return false; }
+bool reflects(const CoatedMaterial&) { return true; }
+bool reflects(const MixMaterial& m) {
+    return std::ranges::all_of(m.parts, [](const MixPart& p) { return only_reflects(p.most()); });
+}
+bool reflects(const BoundaryMaterial&) { return false; }
+bool reflects(const GltfMaterial& m) { return m.transmission <= 0 && m.diffuse_transmission <= 0; }
+
 bool gathers(const DiffuseMaterial&) { return false; }
 bool gathers(const ConductorMaterial& m) { return m.alpha.widest() < kNarrowAlpha; }
 bool gathers(const DielectricMaterial& m) { return m.ior != 1 && !m.thin && m.alpha.widest() < kNarrowAlpha; }
@@ -81,6 +91,10 @@ int tangent_set(const Material& material) {
 }
 
 bool is_mixture(const Material& material) { return std::holds_alternative<MixMaterial>(material.kind); }
+
+bool only_reflects(const Material& material) {
+    return std::visit([](const auto& m) { return reflects(m); }, material.kind);
+}
 
 bool makes_caustics(const Material& material) {
     return std::visit([](const auto& m) { return gathers(m); }, material.kind);

@@ -14,6 +14,9 @@ int tangent_set(const Material& material);
 /// Whether hits must choose a part of a mixture (SurfaceHit::choice).
 bool is_mixture(const Material& material);
 
+/// Whether the material transmits no light, apart from its opacity.
+bool only_reflects(const Material& material);
+
 /// Whether the material may cause caustics.
 bool makes_caustics(const Material& material);
 

@@ -140,6 +140,7 @@ InstanceRecord make_record(const Mesh& mesh, const Material& material,
     r.needs_frame = set >= 0;
     r.textured = textured;
     r.mixed = is_mixture(material);
+    r.smooth = r.normals && only_reflects(material);
     if (r.needs_frame) {
         r.tangents = mesh.tangents.empty() ? nullptr : mesh.tangents.data();
         r.tangent_uv = mesh.uv[set].empty() ? nullptr : mesh.uv[set].data();
@@ -203,10 +204,16 @@ void surface_at(const InstanceRecord& r, const Placement& place, std::uint32_t p
     const float w = 1 - u - v;
     hit.ns = hit.ng;
     if (r.normals) {
-        const Vec3f n = r.normal(place, t.a) * w + r.normal(place, t.b) * u + r.normal(place, t.c) * v;
+        const Vec3f na = r.normal(place, t.a), nb = r.normal(place, t.b), nc = r.normal(place, t.c);
+        const Vec3f n = na * w + nb * u + nc * v;
         hit.ns =
             unit_or(to_float(place.normal_matrix.vector(to_double(unit_or(n, {})))), hit.ng);
         if (dot(hit.ns, hit.ng) < 0) hit.ns = -hit.ns;
+        hit.smooth = r.smooth && !(na == nb && nb == nc);
+        if (hit.smooth) {
+            hit.barycentric[0] = u, hit.barycentric[1] = v;
+            for (int i = 0; i < 3; ++i) hit.on_mesh[i] = hit.position[i];
+        }
     }
     if (r.uv[0] || r.uv[1] || r.colors) interpolate_attributes(r, primitive, u, v, hit);
     if (r.needs_frame) set_tangent(r, place, t, w, u, v, hit);

@@ -43,6 +43,7 @@ struct InstanceRecord {
     bool needs_frame;  // a normal map or anisotropy needs a tangent
     bool textured;     // the material uses textures
     bool mixed;        // a mixture: hits choose a part
+    bool smooth;       // vertex normals, and a material that only reflects
     Placement still;   // for instances that neither move nor deform
     const Motion* motion = nullptr;  // over the scene's interval; null: static
     const Shown* shown = nullptr;    // null: always

@@ -177,6 +177,11 @@ class Scene {
     /// without vertex normals.
     float curvature(const SurfaceHit& hit) const;
     const std::vector<Texture>& textures() const { return description_.textures; }
+    /// The BSDF at a hit of a camera path, which is moved to the smooth surface (smooth_surface.h).
+    Bsdf shade_smooth(const Material& material, SurfaceHit& hit, const Wavelengths& wavelengths) const {
+        if (hit.smooth) lift(hit);
+        return shade(material, textures(), hit, wavelengths);
+    }
     const LightSet& lights() const { return lights_; }
     /// Light sampling including textured emission (see LightSample::uneven).
     std::optional<LightSample> sample_light(float u_select, Vec2f u, Vec3f position,
@@ -223,6 +228,7 @@ class Scene {
     void measure();
     bool passes(const Ray& ray, const RawHit& hit) const;
     void find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const;
+    void lift(SurfaceHit& hit) const;
     void find_sphere(const Ray& ray, const RawHit& raw, Hit& hit) const;
     Bounds bounds_of(std::uint32_t instance) const;
     Rgb triangle_emission(std::size_t light, Vec2f barycentric, Vec3f toward, float time,

@@ -178,7 +178,7 @@ class Path : public PathState {
     /// Evaluates the BSDF at a surface and continues from there.
     bool scatter(const Material& material, SurfaceHit& hit, int vertex) {
         if (walk.light_mis.path_mis) return scatter_with_light_mis(material, hit, vertex);
-        const Bsdf bsdf = shade(material, scene.textures(), hit, wavelengths);
+        const Bsdf bsdf = scene.shade_smooth(material, hit, wavelengths);
         return sample_vertex_by_kind(bsdf, material, hit, vertex, nullptr);
     }
 
@@ -186,7 +186,7 @@ class Path : public PathState {
     /// optional vertex (bug 86173): 1.7 kB at each surface.
     bool scatter_with_light_mis(const Material& material, SurfaceHit& hit, int vertex) {
         const SurfaceHit bare = hit;
-        const Bsdf bsdf = shade(material, scene.textures(), hit, wavelengths);
+        const Bsdf bsdf = scene.shade_smooth(material, hit, wavelengths);
         MisVertex mis_vertex(scene, material, bare, wavelengths, bsdf);
         return sample_vertex_by_kind(bsdf, material, hit, vertex, &mis_vertex);
     }

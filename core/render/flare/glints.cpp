@@ -32,7 +32,7 @@ float Glints::seen(Ray ray, float half_angle, Wavelengths wavelengths, PathSampl
         if (!found || found->sphere_light >= 0) break;
         SurfaceHit& hit = found->surface;
         const MaterialAt material = scene_.material(hit);
-        const Bsdf bsdf = shade(material, scene_.textures(), hit, wavelengths);
+        const Bsdf bsdf = scene_.shade_smooth(material, hit, wavelengths);
         const float u_lobe = sampler.next_1d();
         const Vec2f u = sampler.next_2d();
         const auto sample =

@@ -43,6 +43,7 @@ bool PathMis::cross(VolumeState& volume, Vertex& vertex, Vec3f wi) {
     const SurfaceHit& hit = vertex.hit_;
     const bool entering = dot(wi, hit.ng) < 0;
     if (entering != hit.front) return true;   // reflected
+    if (hit.smooth) return false;             // light paths cannot find light from behind the triangle
     return std::visit(
         [&](const auto& b) {
             return !b.bounds_volume() || volume.cross(b.interior(), entering);

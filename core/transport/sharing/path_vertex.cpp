@@ -46,6 +46,7 @@ Bsdf PathVertex::shade_from(Vec3f w) const {
     SurfaceHit hit = hit_;
     hit.wo = w;
     hit.front = dot(hit.ng, w) > 0;
+    if (hit.smooth) use_smooth_normal(hit);
     return shade(material_, textures_, hit, wavelengths_);
 }
 
@@ -56,6 +57,7 @@ const Bsdf& PathVertex::seen_from(Vec3f w) {
 
 Scattering PathVertex::scattering(Vec3f to_camera, Vec3f to_light) {
     Scattering s;
+    if (is_behind(to_camera, to_light)) return s;
     const Evaluation e = evaluate_with_pdf(seen_from(to_camera), to_camera, to_light);
     if (e.f_cos.is_black()) return s;
     s.f_cos = e.f_cos;
@@ -74,7 +76,7 @@ bool PathVertex::reversible(Vec3f a, Vec3f b) {
 std::optional<LightStep> PathVertex::step(Vec3f to_light, float u_lobe, Vec2f u) {
     const Bsdf& bsdf = seen_from(to_light);
     const auto s = sample(bsdf, to_light, u_lobe, u);
-    if (!s || s->hero_only || s->weight.is_black()) return std::nullopt;
+    if (!s || s->hero_only || s->weight.is_black() || is_behind(s->wi, to_light)) return std::nullopt;
     LightStep step{.to_camera = s->wi, .specular = s->specular, .transmitted = s->transmitted};
     if (s->specular) {
         step.weight = s->weight * flux_correction(bsdf, *s, to_light, hit_.ng);

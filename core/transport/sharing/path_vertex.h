@@ -47,6 +47,8 @@ class PathVertex {
     bool reversible(Vec3f a, Vec3f b);
 
   private:
+    /// Whether a smooth surface reflects between two sides of its triangle, which light paths cannot find.
+    bool is_behind(Vec3f a, Vec3f b) const { return hit_.smooth && dot(hit_.ng, a) * dot(hit_.ng, b) <= 0; }
     Bsdf shade_from(Vec3f w) const;
     const Material& material_;
     const std::vector<Texture>& textures_;

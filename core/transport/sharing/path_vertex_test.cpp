@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "material/material_needs.h"
 #include "material/test_hits.h"
 #include "math/hash.h"
 #include "math/statistics.h"
@@ -239,4 +240,33 @@ TEST_CASE("what a delta lobe has from the other side is what reversed() says") {
     }
     CHECK(compared > 500);
     CHECK(uneven > 20);
+}
+
+TEST_CASE("on a smooth mesh the vertex has the BSDF of camera paths, and none through its triangle") {
+    const Wavelengths wavelengths = Wavelengths::sample(0.4f);
+    int lit = 0, grazing = 0, behind = 0;
+    for (const Case& c : cases()) {
+        if (c.ns == Vec3f{0, 0, 1} || !only_reflects(c.material)) continue;
+        CAPTURE(std::string(c.name));
+        for (int i = 0; i < 2000; ++i) {
+            Vec3f wo = around(pair(1, i)), wi = around(pair(4, i));
+            if (i % 2) wo = normalize(Vec3f{wo.x, wo.y, 0.1f * wo.z});
+            SurfaceHit hit = hit_of(c, wo);
+            hit.smooth = true;
+            PathVertex vertex(c.material, c.textures, hit, wavelengths);
+            const Spectrum f = vertex.scattering(wo, wi).f_cos;
+            use_smooth_normal(hit);
+            const Bsdf bsdf = shade(c.material, c.textures, hit, wavelengths);
+            const Spectrum camera = evaluate_with_pdf(bsdf, wo, wi).f_cos;
+            const bool through = wo.z * wi.z <= 0;
+            behind += through && !camera.is_black();
+            if (through) CHECK(f.is_black());
+            else CHECK(f[1] == doctest::Approx(camera[1]).epsilon(1e-4));
+            lit += !f.is_black();
+            grazing += !f.is_black() && dot(c.ns, wo) * wo.z < 0.1f * wo.z * wo.z;
+        }
+    }
+    CHECK(lit > 1000);
+    CHECK(grazing > 100);
+    CHECK(behind > 100);
 }

@@ -6,7 +6,7 @@ void note_surface(PathState& path, const Material& material, const SurfaceHit& h
     FirstHit& first = *path.first_hit;
     if (first.found && smooth) return;
     const Rgb color = albedo(material, path.scene.textures(), hit);
-    if (!first.found) first = {true, hit.position, hit.ns, color, hit.instance, {}, {}};
+    if (!first.found) first = {true, hit.met(), hit.ns, color, hit.instance, {}, {}};
     if (smooth) return;
     const float share = path.walk.throughput.average();
     first.seen_albedo = first.seen_albedo + color * share;
