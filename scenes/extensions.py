@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes six small scenes that together use every glTF extension that Daguerre reads.
+"""Makes seven small scenes that together use every glTF extension that Daguerre reads.
 
     python scenes/extensions.py [-o FOLDER] [--only NAME]        (default: out/extensions)
 
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from kit.command import write_scenes
 
-SCENES = ("shelf", "glass", "octopus", "garden", "street", "packed")
+SCENES = ("shelf", "glass", "octopus", "garden", "street", "packed", "street_on_the_map")
 
 if __name__ == "__main__":
     write_scenes("extensions", SCENES, __doc__)

@@ -129,7 +129,7 @@ def test_pictures_of_the_gallery_have_the_size_that_their_commands_say(
     gallery: dict[str, Any],
 ) -> None:
     for picture in gallery.values():
-        if not hasattr(picture, "commands") or picture.scene.endswith(".py"):
+        if not hasattr(picture, "commands") or picture.by_script:
             continue
         sizes = [panels_of(command) for command, _ in picture.commands("out")]
         count = sum(n for n, _, _ in sizes)

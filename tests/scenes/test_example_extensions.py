@@ -14,7 +14,7 @@ from daguerre.importers.gltf.extensions import KNOWN
 from tests.support.scene.example_scenes import make
 
 ROOT = Path(__file__).resolve().parents[2]
-SCENES = ("shelf", "glass", "octopus", "garden", "street", "packed")
+SCENES = ("shelf", "glass", "octopus", "garden", "street", "packed", "street_on_the_map")
 PACKAGES = ("DracoPy", "opengl_basisu")
 
 

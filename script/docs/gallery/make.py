@@ -36,6 +36,7 @@ SCENES = (
     ["extensions.py"],
     ["motion.py"],
     ["lens_scenes.py"],
+    ["solids.py"],
     ["imperfections.py"],
     ["exposure.py"],
     ["calibrated.py"],
@@ -53,6 +54,7 @@ python scenes/night_table.py out/night_table.glb
 python scenes/extensions.py
 python scenes/motion.py
 python scenes/lens_scenes.py
+python scenes/solids.py
 ```
 
 `--denoise` needs the extra `denoise`, and the garden the extra `compression`
@@ -232,8 +234,9 @@ def blender_shots() -> list[str]:
     return [ABOUT_BLENDER_ENGINE, *parts] if parts else []
 
 
-def scene_link(scene: str) -> str:
-    """The program that makes a scene, where the repository has it."""
+def scene_link(scene: str | tuple[str, ...]) -> str:
+    """The program that makes a scene, or the first of several, where the repository has it."""
+    scene = scene if isinstance(scene, str) else scene[0]
     place = Path(scene.replace("out/", "scenes/")).with_suffix(".py")
     return f" Scene: [{place}](../../{place})." if (ROOT / place).exists() else ""
 

@@ -13,33 +13,40 @@ COMMON = "--res 750x500 --tone soft"
 class Picture:
     """One picture: its file, what it shows, and the arguments of `daguerre render`.
 
-    Several flags make a sheet of as many panels, side by side in `columns`; a command that writes
-    `--frames` gives a panel for each. A scene that is a Python script makes the picture by itself.
-    What an anamorphic lens has squeezed is stretched back by making the panels less high.
+    Several flags make a sheet of as many panels, side by side in `columns`, of one scene or of a
+    scene each; a command that writes `--frames` gives a panel for each. A scene that is a Python
+    script makes the picture by itself. What an anamorphic lens has squeezed is stretched back by
+    making the panels less high.
     """
 
     name: str
     title: str
-    scene: str
+    scene: str | tuple[str, ...]
     flags: str | tuple[str, ...]
     needs_data: bool = False
     columns: int = 1
     squeeze: float = 1.0
 
+    @property
+    def by_script(self) -> bool:
+        """Whether a Python script makes the picture by itself."""
+        return isinstance(self.scene, str) and self.scene.endswith(".py")
+
     def commands(self, folder: str) -> list[tuple[str, str]]:
         """Commands of each panel, and the file that comes of it; #### counts frames."""
-        if self.scene.endswith(".py"):
+        if self.by_script:
             output = f"{folder}/{self.name}.png"
             return [(f"python {self.scene} {output} {self.flags}".strip(), output)]
         flags = (self.flags,) if isinstance(self.flags, str) else self.flags
+        scenes = (self.scene,) * len(flags) if isinstance(self.scene, str) else self.scene
         made = []
-        for k, given in enumerate(flags):
+        for k, (scene, given) in enumerate(zip(scenes, flags, strict=True)):
             number = f"_{k + 1}" if len(flags) > 1 else ""
             frames = ".####" if "--frames" in given else ""
             output = f"{folder}/{self.name}{number}{frames}.png"
             common = COMMON if "--res" not in given else "--tone soft"
             common = "" if "--exposure manual" in given else common  # developed
-            words = ("daguerre render", self.scene, given, common, f"-o {output}")
+            words = ("daguerre render", scene, given, common, f"-o {output}")
             made.append((" ".join(word for word in words if word), output))
         return made
 
@@ -153,6 +160,30 @@ PICTURES += [
         "Signs and neon tubes of thousands of emissive triangles, through a wide angle at f/2.",
         f"{EXTENSIONS}/street.glb",
         f"--lens wide-angle-35mm-f2 {SMALL}",
+    ),
+    Picture(
+        "map",
+        "The street at the origin, and at map coordinates: 500,000 m east and 5,400,000 m north.",
+        (f"{EXTENSIONS}/street.glb", f"{EXTENSIONS}/street_on_the_map.glb"),
+        ("--lens wide-angle-35mm-f2 --res 450x300 --spp 48 --denoise",) * 2,
+        columns=2,
+    ),
+    Picture(
+        "underwater",
+        "Under water: a bare camera; through a flat port, with the pincushion of refraction, "
+        "focused at 3/4 of the distance; through a dome about the pupil, focused at 0.35 m.",
+        tuple(f"out/solids/{name}.glb" for name in ("bare", "flat", "dome")),
+        tuple(
+            f"--lens wide-angle-35mm-f2 --focus {focus} --ev {ev} --res 360x240 --spp 96 --denoise"
+            for focus, ev in ((2, 0.2), (1.51, 1), (0.35, 1))
+        ),
+        columns=3,
+    ),
+    Picture(
+        "paperweight",
+        "Bubbles of air and coloured glass in a ball of clear glass: solids in solids.",
+        "out/solids/paperweight.glb",
+        "--res 600x400 --spp 128 --denoise",
     ),
     Picture(
         "glass",

@@ -1,0 +1,1 @@
+"""Solids in solids: a pool, the housings of a camera in it, and a paperweight."""
