@@ -29,7 +29,7 @@ struct Picture {
     const FilmDensity& density;
 };
 
-/// Tiles or paths [0], ..., [1] - 1.
+/// Half-open range of indices of tiles or paths.
 using IndexRange = std::array<std::uint64_t, 2>;
 
 /// Concept of a pass: draw(work, first, last) draws the indices [first, last) with the buffers of a thread; kBlock

@@ -12,6 +12,7 @@
 #include "render/drawn_samples.h"
 #include "render/emitter_passes.h"
 #include "render/pass.h"
+#include "render/solids_near_camera.h"
 #include "render/tiles.h"
 
 namespace dg {
@@ -28,22 +29,6 @@ struct Sample {
     PathSampler sampler;
     Wavelengths wavelengths;
 };
-
-/// A box around all points at which camera rays begin.
-Box places_of(const Camera& camera) {
-    constexpr double kReach = 2;   // m: no lens has its front farther from the camera's position
-    constexpr int kSteps = 64;
-    Vec3d last = camera.world_from_camera.at(0).origin;
-    Box box{last, last};
-    double longest = 0;   // step of the camera
-    for (int i = 1; i <= kSteps && camera.world_from_camera.moves(); ++i) {
-        const Vec3d p = camera.world_from_camera.at(double(i) / kSteps).origin;
-        longest = std::max(longest, length(p - last)), last = p;
-        for (int k = 0; k < 3; ++k) box.min[k] = std::min(box.min[k], p[k]), box.max[k] = std::max(box.max[k], p[k]);
-    }
-    const double reach = kReach + longest;
-    return {box.min - Vec3d{reach, reach, reach}, box.max + Vec3d{reach, reach, reach}};
-}
 
 /// Draws camera samples, tile by tile.
 class CameraPass {
@@ -64,8 +49,6 @@ class CameraPass {
           density_(picture.density), drawn_(drawn), weight_(weight), cone_(cone), path_(picture.settings.path),
           instances_(std::uint32_t(picture.scene.description().instances.size())) {
         path_.plate = settings_.plate.get();
-        solids_near_ = scene_.solids_near(places_of(camera_));
-        path_.solids_near = solids_near_;
         const bool exact = std::holds_alternative<ExactLens>(camera_.lens);
         reprojected_ = exact && settings_.dispersion == Dispersion::reproject;
         end_secondary_ = exact && settings_.dispersion == Dispersion::end_secondary;
@@ -92,7 +75,7 @@ class CameraPass {
         draw_batch(work);
     }
 
-    /// Draws the pixel and film point, the time within the pixel's window, and wavelengths. The lens and the pose at
+    /// Samples the film point, the time within the pixel's exposure window, and wavelengths. The lens and the pose at
     /// that time are applied to the whole batch later.
     void add_sample(Workspace& work, Pixel pixel, std::uint32_t index) const {
         const PathSampler sampler(pixel.x, pixel.y, index, settings_.seed);
@@ -222,7 +205,6 @@ class CameraPass {
     const DrawnSamples& drawn_;
     const LightWeight& weight_;
     const PixelCone& cone_;
-    std::vector<std::uint32_t> solids_near_;
     PathSettings path_;
     std::uint32_t instances_;
     bool reprojected_, end_secondary_;   // treatment of secondary wavelengths
@@ -231,8 +213,11 @@ class CameraPass {
 
 }  // namespace
 
-RenderCounters render(const Scene& scene, const Camera& camera, Film& film, const RenderSettings& settings,
+RenderCounters render(const Scene& scene, const Camera& camera, Film& film, const RenderSettings& given,
                       const std::function<bool(double)>& progress) {
+    RenderSettings settings = given;
+    const std::vector<std::uint32_t> solids_near = solids_near_camera(scene, camera);
+    settings.path.solids_near = solids_near;
     if (film.responses().count() != film.count_of(Layer::channels))
         throw input_error("render", "film", "the responses of its channels", "none");
     if (scene.has_catchers() && !(film.count_of(Layer::catchers) && settings.light.off()))

@@ -22,9 +22,9 @@ struct LightGuide;   // light_guide.h
 class FlareGuide;    // flare_guide.h
 class ScatterGuide;  // scatter_guide.h
 
-/// Ghosts, drawn from the emitters (flare_pass.h); 0 paths per sample index, for the whole frame: none.
+/// Lens ghosts, traced from the emitters (flare_pass.h).
 struct FlarePlan {
-    double per_sample = 0;
+    double per_sample = 0;   // paths for each sample index, over the whole frame; 0: no ghosts
     int order = 2;   // number of reflections: 2, or 2 and 4
     bool highlights = true;   // includes ghosts of bright reflections in the scene
     bool learned = true;   // false: uniform choice of ghosts and of points on the front, the reference

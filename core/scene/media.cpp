@@ -49,10 +49,15 @@ Interior Scene::medium_around(Ray ray) const {
     Interior around;
     around.medium = fog_;
     if (!has_bounded_media_) return around;
+    ray.t_max = std::numeric_limits<float>::infinity();
     constexpr int kMost = 256;
     for (int i = 0; i < kMost; ++i) {
         const auto raw = intersector_->intersect(ray);
-        if (!raw || raw->instance == RawHit::kSphere) return around;
+        if (!raw) return around;
+        if (raw->instance == RawHit::kSphere) {
+            ray.t_min = behind_sphere(raw->t);
+            continue;
+        }
         SurfaceHit hit;
         find_surface(ray, *raw, hit);
         if (media_[hit.instance].bounds) return medium_on(hit.instance, !hit.front);

@@ -100,6 +100,9 @@ class Scene {
 
     /// Transmittance along `ray` from t_min to t_max through air and thin sheets; 0 for t_max < 0.
     Spectrum visibility_along(const Ray& ray, const Wavelengths& wavelengths) const;
+    /// The same from a point in `here`. Passes the boundaries of volumes for delta lights.
+    Spectrum visibility_from(const Surroundings& here, const Ray& ray, bool delta,
+                             const Wavelengths& wavelengths) const;
 
     bool has_clear() const { return has_clear_; }  // some surfaces transmit shadow rays
 
@@ -112,19 +115,19 @@ class Scene {
     bool has_nested() const { return !ranks_.of_instance.empty(); }
     /// The first overlaps.
     const std::vector<Overlap>& overlaps() const { return ranks_.overlaps; }
-    /// Whether more solids hold each other than a path knows.
+    /// Whether more solids are nested than Solids::kMost.
     bool nests_too_deeply() const { return ranks_.deepest > Solids::kMost; }
     /// Rank among overlapping solids; 0: the surface is no boundary of such a solid.
     std::uint32_t rank(std::uint32_t instance) const { return has_nested() ? ranks_.of_instance[instance] : 0; }
     /// Sets the index outside a boundary that is hit in `solids`; false: a solid of a higher rank hides it.
-    bool meet_boundary(const Solids& solids, SurfaceHit& hit, const Wavelengths& wavelengths) const;
-    /// Whether a point of `solids` is in another solid than an instance.
+    bool resolve_boundary(const Solids& solids, SurfaceHit& hit, const Wavelengths& wavelengths) const;
+    /// Whether a solid other than `instance` is in `solids`.
     bool in_other(const Solids& solids, std::uint32_t instance) const {
         return solids.top(ranks_.of_instance, instance) != Solids::kNone;
     }
     /// Enters or leaves the solid of a boundary, and solids with boundaries at the same place.
     void cross_boundary(Solids& solids, const SurfaceHit& hit, bool entering) const;
-    /// The inside of the solid that is there, or the fog.
+    /// The inside of the solid with the highest rank, or the fog.
     Interior interior_in(const Solids& solids, float time, const Wavelengths& wavelengths) const;
     /// Solids, by index, that may hold a point of the box at some time.
     std::vector<std::uint32_t> solids_near(const Box& box) const;
@@ -133,12 +136,7 @@ class Scene {
                                        const Wavelengths& wavelengths) const;
     /// Whether a ray begins in a solid.
     bool begins_in_solid(const Ray& ray) const;
-    /// A solid around a point, and the share of directions in which its mesh is closed.
-    struct Surrounding {
-        std::uint32_t instance;
-        float share;
-    };
-    std::vector<Surrounding> surroundings(Vec3f point, float time) const;
+    std::vector<EnclosingSolid> enclosing_solids(Vec3f point, float time) const;
     /// Crosses the boundary of a ranked solid.
     void cross_nested(Surroundings& here, const SurfaceHit& hit, bool entering, const Wavelengths& wavelengths) const;
     /// The medium behind a surface of an instance that is hit inside `here`; `inside` and `bounds_volume` are from its
@@ -237,7 +235,7 @@ class Scene {
     std::optional<float> peak_of(std::int32_t profile) const;
     LightProfiles light_profiles() const;
     template <class Around>   // Interior or Surroundings
-    Spectrum to_light(Ray ray, bool delta, const Around& here, const Wavelengths& wavelengths) const;
+    Spectrum transmittance_to_light(Ray ray, bool delta, const Around& here, const Wavelengths& wavelengths) const;
     template <class Around>
     Spectrum transmission(const Ray& ray, float distance, bool delta, const Around& here,
                           const Wavelengths& wavelengths) const;

@@ -5,11 +5,11 @@
 namespace dg {
 namespace {
 
-constexpr double kShare = 0.5;   // of the mean height of the tangent planes
+constexpr double kShare = 0.5;   // of the lift by Hanika, twice too high over a quadratic surface
 
 }  // namespace
 
-/// In the mesh's space: an affine map of the smooth surface is as smooth.
+/// Computed in the mesh's space: affine maps keep the construction.
 Vec3f lift_to_smooth(const InstanceRecord& r, const Placement& place, const SurfaceHit& hit) {
     const auto& t = r.triangles[hit.primitive];
     const Vec3d corners[3] = {r.position(place, t[0]), r.position(place, t[1]), r.position(place, t[2])};
@@ -31,16 +31,16 @@ Vec3f lift_to_smooth(const InstanceRecord& r, const Placement& place, const Surf
     return to_float(place.world_from_local.vector(lift * kShare));
 }
 
-/// A lift through another surface would let light leak past it, so it is left out.
+/// The hit stays in place where another surface is in between, as light would leak past that surface.
 void Scene::lift(SurfaceHit& hit) const {
     const InstanceRecord& record = records_[hit.instance];
     const Vec3f lift = record.changes() ? lift_to_smooth(record, record.where(hit.time), hit)
                                         : lift_to_smooth(record, record.still, hit);
     const float height = length(lift);
     if (height > hit.error && (dot(lift, hit.ng) > 0) == hit.front) {
-        Ray way = spawn_ray(hit, lift / height, hit.time);
-        way.t_max = height;
-        if (!intersector_->occluded(way)) hit.position += lift;
+        Ray segment = spawn_ray(hit, lift / height, hit.time);
+        segment.t_max = height;
+        if (!intersector_->occluded(segment)) hit.position += lift;
     }
     use_smooth_normal(hit);
 }

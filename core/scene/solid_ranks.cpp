@@ -15,13 +15,13 @@ constexpr float kTouch = 0x1p-17f;
 /// Cosine of the largest angle between triangles that touch along an area.
 constexpr double kParallel = 0.98;
 
-/// Triangles that are searched for meetings, some seconds; other solids with boxes that meet are taken to touch.
+/// Most triangles tested for contact, some seconds. Beyond it, solids with overlapping boxes count as touching.
 constexpr std::size_t kMostSearched = 20'000'000;
 
-/// How the boundaries of two solids meet.
-struct Meeting {
-    bool near = false;       // somewhere
-    bool parallel = false;   // along an area
+/// Contact of two solids.
+struct Contact {
+    bool overlap = false;    // their boundaries touch, or a solid contains the other
+    bool coplanar = false;   // their boundaries touch along an area
 };
 
 class Solid {
@@ -83,27 +83,28 @@ bool are_parallel(const Triangle3d& a, const Triangle3d& b) {
     return std::abs(dot(m, n)) >= kParallel * length(m) * length(n);
 }
 
-Meeting meeting(const Solid& a, const Solid& b, const Bounds& both) {
+Contact contact(const Solid& a, const Solid& b, const Bounds& both) {
     std::vector<BoundedTriangle> of_a = triangles_in(a, both), of_b = triangles_in(b, both);
-    Meeting found;
+    Contact found;
     each_meeting(std::span(of_a), std::span(of_b), [&](const BoundedTriangle& t, const BoundedTriangle& u) {
         const bool parallel = are_parallel(t.corners, u.corners);
-        if (found.near && !parallel) return true;
-        const double reach = double(kTouch * std::max(largest_coordinate(t.bounds.min), largest_coordinate(t.bounds.max)));
+        if (found.overlap && !parallel) return true;
+        const float largest = std::max(largest_coordinate(t.bounds.min), largest_coordinate(t.bounds.max));
+        const double reach = double(kTouch * largest);
         if (distance(t.corners, u.corners) > reach) return true;
-        found.near = true;
-        found.parallel = parallel;
-        return !parallel;
+        found.overlap = true;
+        found.coplanar = parallel;
+        return !parallel;   // contact along an area ends the search
     });
     return found;
 }
 
-/// A solid that nests, while its rank is found.
+/// A solid that takes part in nesting, with the data for its rank.
 struct Nested {
     Bounds bounds;
     std::uint32_t instance;
     int priority;
-    int depth = 0;   // solids with boxes that hold its box
+    int depth = 0;   // overlapping solids that contain it, by their boxes
     bool overlaps = false, touches = false;
 
     auto order() const { return std::tuple(priority, depth, instance); }
@@ -120,9 +121,9 @@ std::vector<Nested> nesting_solids(const SceneDescription& scene, const std::vec
     return found;
 }
 
-/// Whether two solids with boxes that meet overlap, at any time: their boundaries meet, or either holds the other.
-/// `searched`: triangles so far.
-Meeting overlap(const SceneDescription& scene, const Nested& a, const Nested& b, std::size_t& searched) {
+/// Contact of two solids with overlapping boxes. Solids that move count as touching. `searched`: number of triangles
+/// tested so far.
+Contact contact_of(const SceneDescription& scene, const Nested& a, const Nested& b, std::size_t& searched) {
     const Solid first(scene, a.instance), second(scene, b.instance);
     searched += first.size() + second.size();
     if (first.changes() || second.changes() || searched > kMostSearched) return {true, true};
@@ -131,9 +132,9 @@ Meeting overlap(const SceneDescription& scene, const Nested& a, const Nested& b,
         both.min[k] = std::max(a.bounds.min[k], b.bounds.min[k]);
         both.max[k] = std::min(a.bounds.max[k], b.bounds.max[k]);
     }
-    Meeting found = meeting(first, second, both);
-    if (!found.near)
-        found.near = (a.bounds.holds(b.bounds) && first.holds(second.point(0))) ||
+    Contact found = contact(first, second, both);
+    if (!found.overlap)
+        found.overlap = (a.bounds.holds(b.bounds) && first.holds(second.point(0))) ||
                      (b.bounds.holds(a.bounds) && second.holds(first.point(0)));
     return found;
 }
@@ -170,10 +171,10 @@ SolidRanks rank_solids(const SceneDescription& scene, const std::vector<BoundedS
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
     std::size_t searched = 0;
     each_meeting(std::span(nested), [&](Nested& a, Nested& b) {
-        const Meeting found = overlap(scene, a, b, searched);
-        if (!found.near) return true;
+        const Contact found = contact_of(scene, a, b, searched);
+        if (!found.overlap) return true;
         a.overlaps = b.overlaps = true;
-        a.touches |= found.parallel, b.touches |= found.parallel;
+        a.touches |= found.coplanar, b.touches |= found.coplanar;
         b.depth += a.bounds.holds(b.bounds), a.depth += b.bounds.holds(a.bounds);
         if (pairs.size() < kMostOverlaps) pairs.emplace_back(a.instance, b.instance);
         return true;

@@ -1,4 +1,4 @@
-// solid_ranks.h -- which of two overlapping solids is there, found when a scene is built.
+// solid_ranks.h -- which of two overlapping solids fills the space, found when a scene is built.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,13 +10,19 @@ namespace dg {
 struct Instance;
 struct SceneDescription;
 
+/// A solid around a point, and the share of test directions that found the point inside.
+struct EnclosingSolid {
+    std::uint32_t instance;
+    float share;
+};
+
 /// A refracting solid, and its bounds over all times.
 struct BoundedSolid {
     std::uint32_t instance;
     Bounds bounds;
 };
 
-/// Two solids that overlap, and why the higher is there.
+/// Two solids that overlap; the higher fills the space, for the reason `by`.
 struct Overlap {
     std::uint32_t lower, higher;
     const char* by;

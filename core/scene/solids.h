@@ -1,7 +1,7 @@
 // solids.h -- the solids around a path, for solids in solids: a bubble in glass, water in a glass, ice in whisky.
 //
-// Each solid has a rank. Where solids overlap, the highest rank is there; a boundary inside a solid of a
-// higher rank is hidden. Source: Schmidt and Budge 2002, Simple Nested Dielectrics in Ray Traced Images.
+// Each solid has a rank. Where solids overlap, the solid with the highest rank fills the space; a boundary inside a
+// solid of a higher rank is hidden. Source: Schmidt and Budge 2002, Simple Nested Dielectrics in Ray Traced Images.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace dg {
 
 /// How the solids of a material meet others.
 struct Nesting {
-    int priority = 0;       // the higher is there
+    int priority = 0;       // the higher fills the space
     bool literal = false;   // the surface is an interface between the two sides as given: not nested
 };
 
@@ -32,7 +32,7 @@ class Solids {
         for (int i = count_ - 1; i >= 0; --i)
             if (instances_[std::size_t(i)] == instance) instances_[std::size_t(i)] = instances_[std::size_t(--count_)];
     }
-    /// The solid that is there if `without` is not; kNone: none. `ranks`: per instance.
+    /// The solid with the highest rank, apart from `without`; kNone: none. `ranks`: per instance.
     std::uint32_t top(std::span<const std::uint32_t> ranks, std::uint32_t without = kNone) const {
         std::uint32_t best = kNone;
         for (int i = 0; i < count_; ++i) {

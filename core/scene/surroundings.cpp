@@ -1,6 +1,7 @@
 // surroundings.cpp -- the solids around a path, and around a camera.
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "scene/scene.h"
 
@@ -30,7 +31,8 @@ class Entered {
     int count_ = 0;
 };
 
-/// Directions for votes about a point: no two opposite, none along an axis, which meshes are often aligned with.
+/// Directions of rays that vote whether a point is inside a mesh: none along an axis, with which meshes are often
+/// aligned, and no opposite pairs.
 constexpr std::array<Vec3f, 7> kVotes{{{0.35f, 0.86f, 0.37f}, {-0.61f, 0.23f, 0.76f}, {0.82f, -0.31f, 0.48f},
                                        {-0.27f, -0.78f, 0.56f}, {-0.91f, 0.37f, -0.18f}, {0.44f, 0.52f, -0.73f},
                                        {0.19f, -0.66f, -0.72f}}};
@@ -51,13 +53,13 @@ SolidOptics Scene::optics_in(std::uint32_t instance, float time, const Wavelengt
     return solid_optics(now, wavelengths);
 }
 
-bool Scene::meet_boundary(const Solids& solids, SurfaceHit& hit, const Wavelengths& wavelengths) const {
-    Solids beyond = solids;   // on the other side, apart from the solid of the boundary
+bool Scene::resolve_boundary(const Solids& solids, SurfaceHit& hit, const Wavelengths& wavelengths) const {
+    Solids beyond = solids;   // solids on the other side, without the solid of the boundary
     cross_coincident(beyond, hit, true);
     const std::uint32_t here = solids.top(ranks_.of_instance, hit.instance),
                         there = beyond.top(ranks_.of_instance, hit.instance);
-    const std::uint32_t hides = hit.front ? there : here;   // in place of the solid on its own side of the boundary
-    if (hides != Solids::kNone && rank(hides) > rank(hit.instance)) return false;
+    const std::uint32_t inner = hit.front ? there : here;   // the highest other solid on the boundary's inner side
+    if (inner != Solids::kNone && rank(inner) > rank(hit.instance)) return false;
     const std::uint32_t outside = hit.front ? here : there;
     if (outside != Solids::kNone) {
         const SolidOptics optics = optics_in(outside, hit.time, wavelengths);
@@ -75,7 +77,7 @@ void Scene::cross_boundary(Solids& solids, const SurfaceHit& hit, bool entering)
 /// beyond them. `onward`: from the side of hit.wo to the other.
 void Scene::cross_coincident(Solids& solids, const SurfaceHit& hit, bool onward) const {
     if (!ranks_.touches[hit.instance]) return;
-    constexpr float kErrors = 16;
+    constexpr float kErrors = 16;   // multiples of hit.error within which boundaries coincide, as in solid_ranks.cpp
     const float reach = kErrors * hit.error / std::max(std::abs(dot(hit.ng, hit.wo)), 0.05f);
     const Ray ray{.origin = hit.position + hit.wo * reach, .direction = -hit.wo, .time = hit.time, .t_max = 2 * reach};
     Crossings crossings(true);
@@ -100,7 +102,8 @@ Interior Scene::interior_in(const Solids& solids, float time, const Wavelengths&
     return outside;
 }
 
-void Scene::cross_nested(Surroundings& here, const SurfaceHit& hit, bool entering, const Wavelengths& wavelengths) const {
+void Scene::cross_nested(Surroundings& here, const SurfaceHit& hit, bool entering,
+                         const Wavelengths& wavelengths) const {
     cross_boundary(here.solids, hit, entering);
     here.interior = interior_in(here.solids, hit.time, wavelengths);
 }
@@ -113,14 +116,19 @@ std::vector<std::uint32_t> Scene::solids_near(const Box& box) const {
     return near;
 }
 
-/// Calls use(hit, bounds a medium) for each solid or medium around the origin of a ray, from the inside out: a ray
-/// leaves it without having entered it. use() returns whether to go on.
+/// Calls use(hit, is_medium) for each solid or medium that contains the origin of a ray, from the inside out: the ray
+/// leaves it without having entered it. use() returns whether to continue.
 template <typename Use>
 void Scene::leave_solids(Ray ray, const Use& use) const {
     Entered entered;
+    ray.t_max = std::numeric_limits<float>::infinity();
     for (int i = 0; i < kMostHits; ++i) {
         const auto raw = intersector_->intersect(ray);
-        if (!raw || raw->instance == RawHit::kSphere) return;
+        if (!raw) return;
+        if (raw->instance == RawHit::kSphere) {
+            ray.t_min = behind_sphere(raw->t);
+            continue;
+        }
         SurfaceHit hit;
         find_surface(ray, *raw, hit);
         if (has_bounded_media_ && media_[hit.instance].bounds) {
@@ -169,14 +177,14 @@ bool Scene::begins_in_solid(const Ray& ray) const {
     return inside;
 }
 
-std::vector<Scene::Surrounding> Scene::surroundings(Vec3f point, float time) const {
-    std::vector<Surrounding> found;
+std::vector<EnclosingSolid> Scene::enclosing_solids(Vec3f point, float time) const {
+    std::vector<EnclosingSolid> found;
     if (solids_near({to_double(point), to_double(point)}).empty()) return found;
     for (const Vec3f direction : kVotes) {
         const Ray ray{.origin = point, .direction = normalize(direction), .time = time};
         leave_solids(ray, [&](SurfaceHit& hit, bool medium) {
             if (medium) return true;
-            const auto known = std::ranges::find(found, hit.instance, &Surrounding::instance);
+            const auto known = std::ranges::find(found, hit.instance, &EnclosingSolid::instance);
             if (known == found.end()) found.push_back({hit.instance, 1.f / kVotes.size()});
             else known->share += 1.f / kVotes.size();
             return true;

@@ -28,25 +28,30 @@ Interior& interior_of(Surroundings& around) { return around.interior; }
 }  // namespace
 
 Spectrum Scene::visibility(const Ray& ray, bool delta, const Interior& medium, const Wavelengths& wavelengths) const {
-    return has_nested() ? to_light(ray, delta, Surroundings{medium, {}}, wavelengths)
-                       : to_light(ray, delta, medium, wavelengths);
+    return has_nested() ? transmittance_to_light(ray, delta, Surroundings{medium, {}}, wavelengths)
+                       : transmittance_to_light(ray, delta, medium, wavelengths);
 }
 
 Spectrum Scene::visibility_nested(const Ray& ray, bool delta, const Surroundings& here,
                                   const Wavelengths& wavelengths) const {
-    return to_light(ray, delta, here, wavelengths);
+    return transmittance_to_light(ray, delta, here, wavelengths);
 }
 
 Spectrum Scene::visibility_along(const Ray& ray, const Wavelengths& wavelengths) const {
+    const bool looks = has_media_ && ray.t_max > ray.t_min;
+    return visibility_from({looks ? medium_around(ray) : Interior{}, {}}, ray, false, wavelengths);
+}
+
+Spectrum Scene::visibility_from(const Surroundings& here, const Ray& ray, bool delta,
+                                const Wavelengths& wavelengths) const {
     if (ray.t_max < 0) return 0.f;
     if (!(ray.t_max > ray.t_min)) return 1.f;
-    const Interior medium = has_media_ ? medium_around(ray) : Interior{};
-    return has_nested() ? transmission(ray, ray.t_max, false, Surroundings{medium, {}}, wavelengths)
-                       : transmission(ray, ray.t_max, false, medium, wavelengths);
+    return has_nested() ? transmission(ray, ray.t_max, delta, here, wavelengths)
+                        : transmission(ray, ray.t_max, delta, here.interior, wavelengths);
 }
 
 template <class Around>
-Spectrum Scene::to_light(Ray ray, bool delta, const Around& here, const Wavelengths& wavelengths) const {
+Spectrum Scene::transmittance_to_light(Ray ray, bool delta, const Around& here, const Wavelengths& wavelengths) const {
     const float distance = ray.t_max;
     stop_before(ray, distance);
     if (ray.t_max <= 0) return 1.f;
@@ -56,8 +61,8 @@ Spectrum Scene::to_light(Ray ray, bool delta, const Around& here, const Waveleng
 template <class Around>
 Spectrum Scene::transmission(const Ray& ray, float distance, bool delta, const Around& here,
                              const Wavelengths& wavelengths) const {
-    const Interior& medium = interior_of(here);
-    if (!has_clear_ && !medium.present && !medium.medium) return intersector_->occluded(ray) ? 0.f : 1.f;
+    const Interior& interior = interior_of(here);
+    if (!has_clear_ && !interior.present && !interior.medium) return intersector_->occluded(ray) ? 0.f : 1.f;
     Crossings crossings(delta || kNested<Around>);
     if (intersector_->occluded(ray, &crossings)) return 0.f;
     return through_crossings(ray, crossings, delta, here, distance, wavelengths);
@@ -68,27 +73,27 @@ Spectrum Scene::transmission(const Ray& ray, float distance, bool delta, const A
 template <class Around>
 Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, bool delta, Around around, float distance,
                                   const Wavelengths& wavelengths) const {
-    Interior& medium = interior_of(around);
+    Interior& interior = interior_of(around);
     const auto hits = std::span(crossings.hits).first(crossings.count);
     std::ranges::sort(hits, {}, [](const RawHit& h) {
         return std::tuple(h.t, h.instance, h.primitive);
     });
     Spectrum transmittance{1.f};
-    float here = 0, next = 0;
+    float begin = 0, next = 0;   // of the segment, and the least distance of the next hit
     for (const RawHit& hit : hits) {
         if (hit.t < next) continue;
         SurfaceHit surface;
         find_surface(ray, hit, surface);
-        transmittance *= transmittance_through(medium, ray, here, hit.t, wavelengths);
-        here = hit.t;
-        next = here + surface.error / std::abs(dot(surface.ng, surface.wo));
+        transmittance *= transmittance_through(interior, ray, begin, hit.t, wavelengths);
+        begin = hit.t;
+        next = begin + surface.error / std::abs(dot(surface.ng, surface.wo));
         if (is_invisible(hit.instance)) {
-            medium = medium_behind(medium, hit.instance, {}, false, surface.front);
+            interior = medium_behind(interior, hit.instance, {}, false, surface.front);
             if (transmittance.is_black()) return 0.f;
             continue;
         }
         if constexpr (kNested<Around>) {
-            if (rank(hit.instance) > 0 && !meet_boundary(around.solids, surface, wavelengths)) {
+            if (rank(hit.instance) > 0 && !resolve_boundary(around.solids, surface, wavelengths)) {
                 cross_boundary(around.solids, surface, surface.front);
                 if (transmittance.is_black()) return 0.f;
                 continue;
@@ -100,7 +105,7 @@ Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, bool del
             [&](const auto& kind) {
                 const bool bent = kind.bounds_volume() && !delta;
                 transmittance *= bent ? Spectrum(0.f) : kind.straight_transmittance(surface.wo);
-                medium = beyond(medium, hit.instance, kind.interior(), kind.bounds_volume(), surface.front);
+                interior = beyond(interior, hit.instance, kind.interior(), kind.bounds_volume(), surface.front);
             },
             bsdf);
         if constexpr (kNested<Around>)
@@ -108,7 +113,7 @@ Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, bool del
         if (transmittance.is_black()) return 0.f;
     }
     const bool finite = distance < std::numeric_limits<float>::infinity();
-    if (finite || medium.medium) transmittance *= transmittance_through(medium, ray, here, distance, wavelengths);
+    if (finite || interior.medium) transmittance *= transmittance_through(interior, ray, begin, distance, wavelengths);
     return transmittance;
 }
 

@@ -116,3 +116,25 @@ def test_a_mesh_that_is_not_closed_is_told() -> None:
     assert any("'water', a mesh that is not closed" in note for note in session.notes)
     closed = Session(tank(), NARROW, resolution=(8, 8), spp=1)
     assert not any("closed" in note for note in closed.notes)
+
+
+@pytest.mark.parametrize("inside", [True, False], ids=["lamp inside", "lamp outside"])
+@pytest.mark.parametrize("kind", ["ball", "point"])
+def test_the_water_dims_ghosts_of_lamps(kind: str, inside: bool) -> None:
+    """Water without refraction, and a lamp beside the frame: all light comes by ghosts."""
+    place = np.array((0.5, 0.35, -1.2)) * (1 if inside else 3)
+    camera = dg.Camera(lens="double-gauss-50mm-f2", f_stop=2, focus_distance=2)
+
+    def ghosts(**changes: Any) -> float:
+        scene = tank(ior=1.0, **changes)
+        scene.set_environment(color=(0, 0, 0))
+        lamp = (
+            dg.PointLight((9, 9, 9)) if kind == "point" else dg.SphereLight((900, 900, 900), 0.05)
+        )
+        scene.add_light(lamp, at(*place))
+        return mean(scene, camera, flare=4000, resolution=(24, 16), spp=16)
+
+    wet_m = np.linalg.norm(place) * (1 if inside else 2 / 3.6)
+    clear = ghosts(attenuation_distance=np.inf)
+    assert clear > 0
+    assert ghosts() / clear == pytest.approx(0.5 ** (wet_m / 2), rel=0.03)

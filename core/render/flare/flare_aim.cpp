@@ -6,6 +6,7 @@
 #include "math/across.h"
 #include "render/flare/highlight_survey.h"
 #include "render/light_arrival.h"
+#include "transport/media/interior.h"
 
 namespace dg {
 namespace {
@@ -21,6 +22,12 @@ Ray flare_shadow(const EmitterPoint& from, const Ray& from_lens) {
     return shadow_ray(from.point.position, cosine, from_lens);
 }
 
+Spectrum flare_transmittance(const Scene& scene, const PathSettings& settings, const EmitterPoint& from,
+                             const Ray& shadow, const Wavelengths& wavelengths) {
+    const Surroundings around = surroundings_at_camera(scene, settings, shadow, wavelengths);
+    return scene.visibility_from(around, shadow, from.delta, wavelengths);
+}
+
 Spectrum flare_light(const Scene& scene, const Camera& camera, const PathSettings& settings,
                      const FlareArrival& path, PathSampler sampler, std::uint64_t& rays) {
     const Ray ray = to_world(camera, path.lens.ray);
@@ -33,7 +40,7 @@ Spectrum flare_light(const Scene& scene, const Camera& camera, const PathSetting
     ++rays;
     const Ray shadow = flare_shadow(path.from, ray);
     if (!is_traceable(shadow)) return 0.f;
-    return path.radiance * scene.visibility_along(shadow, path.wavelengths);
+    return path.radiance * flare_transmittance(scene, settings, path.from, shadow, path.wavelengths);
 }
 
 FlareAim::FlareAim(const Scene& scene, const Camera& camera, const RenderSettings& settings)

@@ -27,6 +27,10 @@ struct FlareArrival {
 /// Shadow ray from the emitter to the origin of the lens's ray; world.
 Ray flare_shadow(const EmitterPoint& from, const Ray& from_lens);
 
+/// Transmittance along the ray of flare_shadow(), which starts in the solids and media around the camera.
+Spectrum flare_transmittance(const Scene& scene, const PathSettings& settings, const EmitterPoint& from,
+                             const Ray& shadow, const Wavelengths& wavelengths);
+
 /// Radiance of the scene along a flare path, for wavelengths that reach separate film points. `sampler`: for the path
 /// tracer, which reflected light needs. `rays`: counter of all rays.
 Spectrum flare_light(const Scene& scene, const Camera& camera, const PathSettings& settings,

@@ -1,6 +1,6 @@
-// interior.h -- the solids and media around a ray that leaves a vertex of a camera path. Scene::pass has the rule for
-// each boundary. Boundaries without a material (Path::pass_boundary), hidden ones (Path::pass_hidden), light paths
-// (LightWalk) and shadow rays (Scene::visibility) follow the same rules.
+// interior.h -- the solids and media around a ray that leaves a vertex of a camera path. Boundaries without a BSDF
+// (Path::pass_boundary), light paths (LightWalk) and shadow rays (Scene::visibility) follow the same rules, which are in
+// Scene::beyond and Scene::cross_nested.
 #pragma once
 #include "material/bsdf_kind.h"
 #include "scene/scene.h"
@@ -16,24 +16,24 @@ inline Surroundings surroundings_at_camera(const Scene& scene, const PathSetting
     return {scene.has_media() ? scene.medium_around(ray) : Interior{}, {}};
 }
 
-/// Whether a surface is at a hit on a ranked solid: none inside a solid of a higher rank. Sets the index outside it.
-/// Light paths end in nested solids, so MIS with them ends there.
-inline bool meet_boundary(PathState& path, SurfaceHit& hit) {
+/// Sets the index outside the boundary of a ranked solid. False: a solid of a higher rank hides the boundary. Light paths
+/// end in nested solids, so MIS with light paths ends here.
+inline bool resolve_boundary(PathState& path, SurfaceHit& hit) {
     const Solids& solids = path.walk.media.around.solids;
-    const bool met = path.scene.meet_boundary(solids, hit, path.wavelengths);
-    if (!met || hit.outside_ior != 1 || path.scene.in_other(solids, hit.instance))
+    const bool visible = path.scene.resolve_boundary(solids, hit, path.wavelengths);
+    if (!visible || hit.outside_ior != 1 || path.scene.in_other(solids, hit.instance))
         path.walk.light_mis.path_mis = nullptr;
-    return met;
+    return visible;
 }
 
-/// Crosses a boundary that has no surface: of a medium alone, or of a solid inside another.
-inline void pass_unseen(const Scene& scene, Surroundings& around, const SurfaceHit& hit) {
+/// Crosses a boundary that does not scatter: of a medium without a material, or the hidden boundary of a solid.
+inline void cross_unscattered(const Scene& scene, Surroundings& around, const SurfaceHit& hit) {
     if (scene.is_invisible(hit.instance))
         around.interior = scene.beyond(around.interior, hit.instance, {}, false, hit.front);
     else scene.cross_boundary(around.solids, hit, hit.front);
 }
 
-/// Whether the ray that leaves `hit` along `wi` is on the side to which hit.wo does not point.
+/// Whether `wi` and hit.wo are on opposite sides of the surface.
 inline bool is_transmitted(const SurfaceHit& hit, Vec3f wi) { return (dot(wi, hit.ng) > 0) != hit.front; }
 
 /// Interior around the ray that leaves `hit` along `wi`. `here`: interior on the side from which the path arrived.
@@ -44,14 +44,13 @@ Interior interior_after(const Scene& scene, const Interior& here, const SurfaceH
     return scene.beyond(here, hit.instance, bsdf.interior(), bsdf.bounds_volume(), hit.front);
 }
 
-/// Changes the surroundings to those of the ray that leaves `hit` along `wi`. `here`: on the side from which the path
-/// arrived.
+/// Updates the surroundings for the ray that leaves `hit` along `wi`. On entry they are on the side of hit.wo.
 template <Scatters B>
-void leave_along(const Scene& scene, Surroundings& here, const SurfaceHit& hit, const B& bsdf, Vec3f wi,
+void leave_along(const Scene& scene, Surroundings& around, const SurfaceHit& hit, const B& bsdf, Vec3f wi,
                  const Wavelengths& wavelengths) {
     if constexpr (PhaseKind<B>) return;
-    if (scene.rank(hit.instance) == 0) here.interior = interior_after(scene, here.interior, hit, bsdf, wi);
-    else if (is_transmitted(hit, wi)) scene.cross_nested(here, hit, hit.front, wavelengths);
+    if (scene.rank(hit.instance) == 0) around.interior = interior_after(scene, around.interior, hit, bsdf, wi);
+    else if (is_transmitted(hit, wi)) scene.cross_nested(around, hit, hit.front, wavelengths);
 }
 
 /// Visibility of a light sample from a hit. `ray`: from ray_to_light().

@@ -8,6 +8,7 @@
 #include "render/flare/maps/coarse_light.h"
 #include "render/flare/maps/sheet_error.h"
 #include "render/parallel.h"
+#include "render/solids_near_camera.h"
 
 namespace dg {
 namespace {
@@ -36,14 +37,15 @@ std::vector<SmallSource> choose_sources(const FlareAim& aim) {
     return chosen;
 }
 
-bool is_hidden(const FlareAim& aim, const SmallSource& source) {
+bool is_hidden(const FlareAim& aim, const SmallSource& source, const PathSettings& settings) {
     const MapRays rays(aim.camera(), aim.sensor(), aim.ghost_lens(), aim.steps(0), source.shape);
     for (int i = 0; i < kShadows; ++i) {
         PathSampler sampler(source.source, kSequence, std::uint32_t(i), 0);
         const CameraRandom u = sampler.camera();
         const SmallSource::Point& p = source.point(u.time);
         const auto shadow = rays.shadow({u.lens * 2 - Vec2f{1, 1}, p.shift, 0}, p.from, p.moment.time);
-        if (shadow && aim.scene().visibility_along(*shadow, Wavelengths::sample(u.lambda)).min() < 1) return true;
+        const Wavelengths wavelengths = Wavelengths::sample(u.lambda);
+        if (shadow && flare_transmittance(aim.scene(), settings, p.from, *shadow, wavelengths).min() < 1) return true;
     }
     return false;
 }
@@ -53,7 +55,10 @@ bool is_hidden(const FlareAim& aim, const SmallSource& source) {
 FlareSheets::FlareSheets(const FlareAim& aim, const RenderSettings& settings) {
     if (aim.pairs() == 0 || !serves(aim.camera(), settings)) return;
     sources_ = choose_sources(aim);
-    for (const SmallSource& source : sources_) hidden_.push_back(is_hidden(aim, source));
+    PathSettings path = settings.path;
+    const std::vector<std::uint32_t> solids_near = solids_near_camera(aim.scene(), aim.camera());
+    path.solids_near = solids_near;
+    for (const SmallSource& source : sources_) hidden_.push_back(is_hidden(aim, source, path));
     make_maps(aim, settings);
     divide(settings);
     if (error_ <= kMostError) return;

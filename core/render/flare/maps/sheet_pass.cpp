@@ -245,7 +245,8 @@ float SheetPass::seen(Work& work, const Sheet& s, const MapRay& ray, const Small
     const auto shadow = s.rays.shadow(ray, from.from, from.moment.time);
     if (!shadow) return 0;
     ++work.counters.rays;
-    return picture_.scene.visibility_along(*shadow, Wavelengths::sample(u_lambda))[0];
+    const Wavelengths wavelengths = Wavelengths::sample(u_lambda);
+    return flare_transmittance(picture_.scene, picture_.settings.path, from.from, *shadow, wavelengths)[0];
 }
 
 /// Shutter transmission: the mean over the exposure, or the value at the point's time for a moving source with a
