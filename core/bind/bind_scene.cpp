@@ -231,7 +231,7 @@ std::optional<std::tuple<float, std::uint32_t>> first_hit(const Scene& scene, co
 
 std::vector<std::pair<std::uint32_t, float>> surroundings(const Scene& scene, const Place& point, float time) {
     std::vector<std::pair<std::uint32_t, float>> found;
-    for (const auto& [instance, share] : scene.surroundings(to_float(vec(point) - scene.origin()), time))
+    for (const auto& [instance, share] : scene.enclosing_solids(to_float(vec(point) - scene.origin()), time))
         found.emplace_back(instance, share);
     return found;
 }
@@ -255,8 +255,9 @@ void bind_built_scene(nb::module_& m) {
         .def_prop_ro("origin", [](const Scene& s) { return std::tuple{s.origin().x, s.origin().y, s.origin().z}; },
                      "Origin of the scene's frame in the world, m. Arguments and results are in the world.")
         .def_prop_ro("overlaps", &overlaps,
-                     "The first pairs of overlapping solids, as instances: lower, higher, and why the higher one is there.")
-        .def_prop_ro("nests_too_deeply", &Scene::nests_too_deeply, "Whether more solids hold each other than a path knows.")
+                     "The first pairs of overlapping solids, as instances: lower, higher, which fills the space, and why.")
+        .def_prop_ro("nests_too_deeply", &Scene::nests_too_deeply,
+                     "Whether more solids are nested than a path can keep.")
         .def("surroundings", &surroundings, "point"_a, "time"_a,
              "Absorbing volumes around a point at a time (fraction of the interval): pairs of an instance and the share "
              "of directions in which its mesh is closed.")

@@ -50,9 +50,9 @@ class ExactLens {
     /// Throws Error if the lens cannot open or focus as requested (see paraxial.h).
     ExactLens(const Prescription& lens, const ExactLensSettings& settings);
 
-    /// This lens as another state of the body of `middle`, the lens at mid-exposure: the film is
-    /// fixed in the body, so focusing moves the glass. Weights are exposures divided by the H0 of
-    /// `middle`.
+    /// This lens at another time of the exposure. `middle` is the lens at mid-exposure: both share
+    /// a camera body with a fixed film, so focusing moves the glass. Weights are exposures divided
+    /// by the H0 of `middle`.
     ExactLens in_the_body_of(const ExactLens& middle) const;
 
     /// Copy of this lens with dirt masks, which attenuate rays. H0 stays the H0 of the clean lens.
@@ -95,13 +95,13 @@ class ExactLens {
     /// The lens with barrel walls and blades. Throws Error if their dimensions are unknown or a
     /// finish is invalid (scatter_lens.h).
     ScatterLens scatter(const SensorStack& stack, const LensScatter& parts) const;
-    /// Random walk of a scene ray through the scattering lens, seeded by `seed`; its landing point
-    /// and light on the film. Aim weight and etendue are 0, since camera rays do not sample
-    /// scatter.
+    /// Landing point and light of a random walk. Aim weight and etendue are 0, since camera rays do
+    /// not sample scatter.
     struct Scattered {
         Reprojection landing{};
-        float blur2_mm2 = 0;   // ScatteredLight::blur2
+        float blur2_mm2 = 0;   // mm2, squared radius of the footprint on the film
     };
+    /// Random walk of a scene ray through the scattering lens, seeded by `seed`.
     Scattered reproject(const CameraRay& ray, const LensIndices& n, const ScatterLens& lens,
                         std::uint64_t seed) const;
 
@@ -115,7 +115,7 @@ class ExactLens {
     /// Origin of a scene ray on the first surface (camera frame, m); the ray is a line in both
     /// directions.
     std::optional<Vec3d> start(Vec3d point, Vec3d direction) const;
-    /// z of the centre of the entrance pupil, m: nonzero only for states of a body.
+    /// z of the centre of the entrance pupil, m: nonzero only for lenses of in_the_body_of().
     double pupil_offset_m() const { return 1e-3 * advance_; }
 
     /// View direction (unit, camera frame) of a film point in mm, upright: mean direction of the
@@ -144,7 +144,7 @@ class ExactLens {
 
   private:
     struct State;
-    /// Transmittance of a partly open leaf shutter, as a fraction of the iris radius, at an iris
+    /// Transmittance of a leaf shutter, open to a fraction of the iris radius, at an iris
     /// point; excludes the iris.
     float leaf_transmission(float opening, float x_mm, float y_mm) const;
     /// Product of both dirt masks for a ray's front point and iris point (lens frame, mm).

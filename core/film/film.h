@@ -68,8 +68,8 @@ class Film {
     /// Adds the whole light of a camera sample in a pixel, because the variance needs the square of the sum. Not thread
     /// safe for the same pixel: tiles own their pixels.
     void add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
-    /// Thread-safe add(), which locks the pixel, for lenses with dispersion, which sends wavelengths to the pixels of other
-    /// tiles. No thread may call add() for the same pixel meanwhile.
+    /// Like add(), but thread safe: locks the pixel. For lenses with dispersion, where wavelengths land in pixels of other
+    /// tiles. No thread may call add() for the same pixel at the same time.
     void add_locked(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
     /// Adds a colour to the picture, but not to bands and channels.
     void add(int x, int y, std::uint32_t sample, Vec3f xyz);
@@ -164,8 +164,8 @@ class Film {
     }
     bool has_emitter_layers() const { return count_of(Layer::splats) || count_of(Layer::flare); }
 
-    /// Sums of X, Y, Z over the samples with even indices (Layer::halves), which a camera sample, or a splat to `layer`, is
-    /// also added to; null: the index is odd, or there are no such sums.
+    /// Sums of X, Y, Z over even-indexed samples (Layer::halves), for a camera sample, or for a splat to `layer`. Null
+    /// for an odd index, or without such sums.
     ValueSum* even_sample_sums(std::size_t i, std::uint32_t sample);
     ValueSum* even_sample_sums(std::size_t i, std::uint32_t sample, Layer layer);
     /// Adds light to XYZ and bands. Returns false if the sample is bad.

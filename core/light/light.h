@@ -176,8 +176,9 @@ class LightSet {
         return sphere_light_at(spheres_[sphere], time);
     }
     SphereLight sphere_light_at(std::size_t light, float time) const;
-    /// Index in lights() of an Intersector sphere's light; of a triangle's light, or -1.
+    /// Index in lights() of an Intersector sphere.
     std::int64_t sphere_index(std::uint32_t sphere) const { return spheres_[sphere]; }
+    /// Index in lights() of a triangle; -1: the triangle is no light.
     std::int64_t triangle_index(std::uint32_t instance, std::uint32_t primitive) const;
     /// Whether the light changes over time.
     bool moves(std::size_t light) const {
@@ -191,7 +192,7 @@ class LightSet {
     const std::vector<Light>& lights() const { return lights_; }
     /// A triangle light at a time; empty while it is hidden.
     std::optional<TriangleLight> triangle_at(std::size_t light, float time) const;
-    /// A light of another kind at a time.
+    /// A light at a time, of any kind but triangles (triangle_at).
     Light light_at(std::size_t light, float time) const;
     /// Profile factor on the emission of a light at a time in the direction `away` (unit); not for triangles.
     Rgb shaped(const Light& now, Vec3f away) const;

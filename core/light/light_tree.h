@@ -30,7 +30,7 @@ struct alignas(64) LightNode {
     float facts[kFacts][kWide] = {};
     std::int32_t next[kWide] = {};   // node of a group, or ~light
 
-    LightNode() {   // missing children have intensity 0
+    LightNode() {   // a missing child has intensity 0; its cos_spread of -1 keeps weigh_node() on its fast path
         for (float& cos_spread : facts[8]) cos_spread = -1;
     }
 };

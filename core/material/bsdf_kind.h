@@ -50,7 +50,7 @@ concept HasInterior = requires(const B& bsdf) {
 };
 
 /// straight_transmittance(): transmittance of a smooth clear surface along the unrefracted ray. At the boundary of a
-/// volume, both faces of a plane slab use the Fresnel reflectance of the angle outside.
+/// volume, the entry and exit face of a plane slab use the Fresnel reflectance at the outer angle.
 /// reversed(): weight of a delta lobe from wi to wo over its weight from wo to wi, without the factor 1 / eta^2.
 template <typename B>
 concept HasDeltas = requires(const B& bsdf, Vec3f wo, Vec3f wi) {

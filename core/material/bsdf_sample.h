@@ -31,7 +31,7 @@ struct Evaluation {
 /// The volume or medium behind a surface: its absorption, with the transmittance `color` over `distance` metres, or a
 /// participating medium.
 struct Interior {
-    bool present = false;
+    bool present = false;   // absorbs, by color and distance
     Spectrum color{1.f};
     float distance = 1;
     const Medium* medium = nullptr;      // participating medium; null: none

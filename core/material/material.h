@@ -1,5 +1,5 @@
 // material.h -- materials of surfaces. To add a kind: a struct in surfaces.h, a bsdf_x.h/.cpp with its BSDF, an
-// alternative in both variants, and a shade_kind() in shade_surfaces.cpp.
+// alternative of Bsdf and of Material::kind, and a shade_kind() in shade_surfaces.cpp.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -107,7 +107,7 @@ bool emits_from_behind(const Material& material);
 /// True if the material may emit; light/ computes means over triangles.
 bool emits(const Material& material);
 
-/// Ways in which light may pass the material unrefracted at some point; conservative with respect to
+/// Strongest straight transmission anywhere on the material, for shadow rays. Never weaker than
 /// straight_transmittance() of its BSDFs.
 Clear clearness(const Material& material);
 

@@ -68,7 +68,7 @@ std::optional<Scene::Hit> LightWalk::meet_visible() {
 /// Whether a boundary is within another solid or touches one. Camera paths have the full weight there.
 bool LightWalk::meets_solids(SurfaceHit hit) const {
     if (hit.front && volume_.where != VolumeState::Where::air) return true;
-    return !scene_->meet_boundary({}, hit, wavelengths_) || hit.outside_ior != 1;
+    return !scene_->resolve_boundary({}, hit, wavelengths_) || hit.outside_ior != 1;
 }
 
 bool LightWalk::meet(std::optional<LightVertex>& vertex) {

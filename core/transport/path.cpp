@@ -23,8 +23,8 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kBranchDraws = 1 << 15;   // sampler dimensions between branches: more than the longest path uses
 
-/// Reflection and refraction at a smooth clear interface, each weighted by its probability. Empty unless there are
-/// exactly two lobes: for total internal reflection, black glass, and coats.
+/// Reflection and refraction at a smooth clear interface, each weighted by its probability. Empty if there are
+/// not exactly two lobes, as for total internal reflection, black glass and coats.
 template <Scatters B>
 std::optional<std::array<BsdfSample, 2>> both_lobes(const B& bsdf, Vec3f wo) {
     auto one = bsdf.sample(wo, 0, {}), other = bsdf.sample(wo, kBelowOne, {});
@@ -45,8 +45,8 @@ RayCone next_cone(const Scene& scene, const RayCone& cone, const SurfaceHit& hit
 }
 
 /// A path tracer's loop over vertices, with light sampling and BSDF sampling at each. `Worlds` is OneWorld, or
-/// TwoWorlds for scenes with catchers and plates. Functions that return false end the path. `vertex`: index of the vertex
-/// that the ray leads to, from 0, or of the window (walk.h) before that vertex.
+/// TwoWorlds for scenes with catchers and plates. Functions that return false end the path. `vertex`: number of
+/// vertices before the hit of the ray; windows (walk.h) do not count.
 template <class Worlds>
 class Path : public PathState {
   public:
@@ -85,51 +85,51 @@ class Path : public PathState {
         wavelengths.secondary_ended = secondary_ended;
     }
 
-    /// Follows a branch that has just left a vertex to its end, unless roulette ends it.
+    /// Follows a branch, which has just left `vertex`, until it ends; roulette may end it at once.
     void follow_to_end(int vertex) {
-        const int next = vertex + walk.last.no_window_since();   // a window is no vertex
+        const int next = vertex + walk.last.starts_ray();   // a window is no vertex
         if (next < settings.roulette_depth || survives_roulette(walk, sampler.next_1d())) follow(next);
     }
 
     /// Traces the ray through media to the next hit and processes the hit.
     bool step(int vertex) {
         ++rays;
-        const bool counts = counts_emission(vertex);
+        const bool gathers = gathers_emission(vertex);
         auto found = scene.intersect(walk.ray);
         if (walk.media.around.interior.medium) {
-            const bool last = vertex == settings.max_depth;
-            const MediumEvent event = MediumCrossing(*this).cross(found ? found->surface.t : kInfinity, last);
+            const bool at_end = vertex == settings.max_depth;
+            const MediumEvent event = MediumCrossing(*this).cross(found ? found->surface.t : kInfinity, at_end);
             if (!after_crossing(event, vertex)) return false;
             if (event.kind != MediumEvent::Kind::passed) return true;
         }
-        return found ? worlds_.arrive(*this, *found, vertex, counts) : leave_scene(counts);
+        return found ? worlds_.arrive(*this, *found, vertex, gathers) : leave_scene(gathers);
     }
 
-    /// Processes a hit on a surface or a sphere light. `counts`: from counts_emission().
-    bool arrive(Scene::Hit& found, int vertex, bool counts) {
+    /// Processes a hit on a surface or a sphere light. `gathers`: from gathers_emission().
+    bool arrive(Scene::Hit& found, int vertex, bool gathers) {
         SurfaceHit& hit = found.surface;
         if (walk.media.around.interior.present) walk.throughput *= walk.media.around.interior.transmittance(hit.t);
         if (found.sphere_light < 0 && scene.is_invisible(hit.instance)) return pass_boundary(hit);
         if (found.sphere_light >= 0) {
             const auto sphere = std::uint32_t(found.sphere_light);
             worlds_.meet_sphere(*this, sphere);
-            if (counts) worlds_.gather_emission(*this, sphere_emission(*this, sphere, hit));
+            if (gathers) worlds_.gather_emission(*this, sphere_emission(*this, sphere, hit));
             return false;
         }
         if (!worlds_.meet_surface(*this, hit)) return false;
-        if (scene.rank(hit.instance) > 0 && !meet_boundary(*this, hit)) return pass_boundary(hit);
+        if (scene.rank(hit.instance) > 0 && !resolve_boundary(*this, hit)) return pass_boundary(hit);
         const MaterialAt material = scene.material(hit);
         worlds_.show_plate(*this, material, hit);
-        if (counts) worlds_.gather_emission(*this, surface_emission(*this, material, hit));
-        if (vertex == settings.max_depth && !scene.has_clear()) return false;   // only windows may follow
+        if (gathers) worlds_.gather_emission(*this, surface_emission(*this, material, hit));
+        if (vertex == settings.max_depth && !scene.has_clear()) return false;   // only clear surfaces may follow
         return scatter(material, hit, vertex);
     }
 
   private:
-    using MisVertex = PathMis::Vertex;   // a null pointer: no MIS with light paths that have bounces, from here on
+    using MisVertex = PathMis::Vertex;   // passed by pointer; null: no MIS with light paths that have bounces
 
     bool follow(int vertex) {
-        for (;; vertex += walk.last.no_window_since()) {   // a window is no vertex
+        for (;; vertex += walk.last.starts_ray()) {   // a window is no vertex
             if (!is_traceable(walk.ray)) return traced_ = false;
             if (!step(vertex)) return traced_;
             // Roulette counts a window as a vertex, and may begin at the window before vertex `roulette_depth`.
@@ -137,22 +137,22 @@ class Path : public PathState {
         }
     }
 
-    /// Whether the path gathers the emission of an emitter that it hits. Only flare (render/flare/flare_aim.cpp) excludes
-    /// emission: emitters in sight, which its emitter points sample, and caustics, which paths find too seldom.
-    bool counts_emission(int vertex) const {
+    /// Whether the path gathers the emission of an emitter that it hits. Only the flare pass (flare_aim.cpp) leaves out
+    /// emission: of visible emitters, which it samples directly, and of caustics, which paths hit too rarely.
+    bool gathers_emission(int vertex) const {
         const bool caustic = walk.last.delta && !walk.in_view;
         return (settings.visible_emitters || vertex > 0) && (settings.caustics || !caustic);
     }
 
-    bool leave_scene(bool counts) {
-        if (worlds_.sees_background(*this) && counts && !worlds_.show_plate_sky(*this))
+    bool leave_scene(bool gathers) {
+        if (worlds_.sees_background(*this) && gathers && !worlds_.show_plate_sky(*this))
             worlds_.gather_emission(*this, sky_emission(*this));
         return false;
     }
 
-    /// Passes a window without a surface: the boundary of a medium, or of a solid inside another.
+    /// Passes a boundary without a BSDF: of a medium, or of a solid that a solid of a higher rank hides.
     bool pass_boundary(const SurfaceHit& hit) {
-        pass_unseen(scene, walk.media.around, hit);
+        cross_unscattered(scene, walk.media.around, hit);
         walk.last.window_distance += hit.t;
         const RayCone cone = walk.ray.cone;
         spawn(hit, walk.ray.direction, cone.empty() ? cone : cone.after(hit.t));
@@ -171,7 +171,8 @@ class Path : public PathState {
         const SurfaceHit at = in_medium(walk.ray, event.t);
         if (event.kind == Kind::collision) return sample_vertex(phase, at, vertex, nullptr);
         leave(phase, at, {.wi = event.wi, .weight = 1.f, .pdf = event.phase_pdf}, nullptr);
-        walk.last.bsdf_pdf /= event.light_samples_per_collision, walk.last.candidates = 1;   // as in lamp_sampler.h
+        // The ratio of light samples to collisions for MIS, as in lamp_sampler.h.
+        walk.last.bsdf_pdf /= event.light_samples_per_collision, walk.last.candidates = 1;
         return true;
     }
 
@@ -185,15 +186,15 @@ class Path : public PathState {
     /// scatter() for a path with MIS against light paths with bounces. Separate, because gcc zeroes the storage of an
     /// optional vertex (bug 86173): 1.7 kB at each surface.
     bool scatter_with_light_mis(const Material& material, SurfaceHit& hit, int vertex) {
-        const SurfaceHit bare = hit;
+        const SurfaceHit unshaded = hit;   // before shading moves it and bends its normal
         const Bsdf bsdf = scene.shade_smooth(material, hit, wavelengths);
-        MisVertex mis_vertex(scene, material, bare, wavelengths, bsdf);
+        MisVertex mis_vertex(scene, material, unshaded, wavelengths, bsdf);
         return sample_vertex_by_kind(bsdf, material, hit, vertex, &mis_vertex);
     }
 
     bool sample_vertex_by_kind(const Bsdf& bsdf, const Material& material, const SurfaceHit& hit, int vertex,
                                MisVertex* mis_vertex) {
-        if (first_hit && !walk.guided && worlds_.finds_first_hit())
+        if (first_hit && !walk.guides_recorded && worlds_.finds_first_hit())
             note_surface(*this, material, hit, is_specular(bsdf));
         return std::visit([&](const auto& kind) { return sample_vertex(kind, hit, vertex, mis_vertex); }, bsdf);
     }
@@ -201,18 +202,18 @@ class Path : public PathState {
     /// Adds direct light and samples the next direction.
     template <Scatters B>
     bool sample_vertex(const B& bsdf, const SurfaceHit& hit, int vertex, MisVertex* mis_vertex) {
-        const bool last = vertex == settings.max_depth;
+        const bool at_end = vertex == settings.max_depth;
         const int candidates = light_candidates(scene.lights(), walk.in_view);
         const VertexRandom u = draw_vertex(bsdf, candidates, sampler);
         const auto view = seen_from(bsdf, hit.wo);
-        if (!last && !bsdf.is_specular()) sample_light(bsdf, view, candidates, hit, u, mis_vertex);
+        if (!at_end && !bsdf.is_specular()) sample_light(bsdf, view, candidates, hit, u, mis_vertex);
         if constexpr (!B::kOneLobe)
-            if (!last && walk.in_view && walk.splits < settings.splits && split(bsdf, hit, vertex)) return true;
+            if (!at_end && walk.in_view && walk.splits < settings.splits && split(bsdf, hit, vertex)) return true;
         const auto sample = bsdf.sample(view, u.lobe, u.direction);
         if (!sample || sample->weight.is_black()) return false;
         leave(bsdf, hit, *sample, mis_vertex);
-        if (walk.last.no_window_since()) walk.last.candidates = candidates;
-        return !last || !walk.last.no_window_since();
+        if (walk.last.starts_ray()) walk.last.candidates = candidates;
+        return !at_end || !walk.last.starts_ray();
     }
 
     /// Follows one of two lobes to its end, then continues with the other. Choosing one at random makes glass noisy,
@@ -242,13 +243,13 @@ class Path : public PathState {
         walk.unscattered = walk.unscattered && through;
         advance(bsdf, hit, sample, mis_vertex);
         worlds_.uncover(*this, hit);
-        // The throughput holds the hero's factor from here on, so earlier contributions keep their weights. A BSDF does
-        // not disperse a path without secondary wavelengths.
+        // The weight of such a sample has the hero's factor, so only later contributions are scaled. A path without
+        // secondary wavelengths is not dispersed again.
         if (sample.hero_only) wavelengths.secondary_ended = walk.hero_only = true;
         spawn(hit, sample.wi, cone);
     }
 
-    /// Updates the state. A clear sheet is no vertex: light sampling at the vertex before it passes through the sheet.
+    /// Updates the state. A clear sheet is no vertex, since shadow rays pass it.
     template <Scatters B>
     void advance(const B& bsdf, const SurfaceHit& hit, const BsdfSample& sample, MisVertex* mis_vertex) {
         walk.throughput *= sample.weight;
@@ -265,7 +266,7 @@ class Path : public PathState {
         walk.last = {hit.position, sample.pdf, walk.last.candidates, sample.specular, 0};
     }
 
-    /// Spawns the next ray from a hit, in the same world: with or without objects.
+    /// Spawns the next ray from a hit. It ignores objects if the last ray did.
     void spawn(const SurfaceHit& hit, Vec3f direction, RayCone cone) {
         const bool without_objects = walk.ray.without_objects;
         walk.ray = spawn_ray(hit, direction, walk.ray.time);

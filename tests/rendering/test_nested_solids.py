@@ -193,7 +193,7 @@ def test_what_overlaps_is_told() -> None:
     block(scene, (3, 3, 3), 0, solid(1.5), "glass")
     block(scene, (2, 2, 1), 0, solid(1.0), "gap")
     warnings = Session(scene, NARROW, resolution=(8, 8), spp=1).warnings
-    assert warnings == ["where solids overlap, 'gap' is there, not 'glass' (by containment)"]
+    assert warnings == ["where solids overlap, 'gap' replaces 'glass' (by containment)"]
 
 
 def test_more_solids_than_a_path_knows_are_told() -> None:
@@ -205,7 +205,7 @@ def test_more_solids_than_a_path_knows_are_told() -> None:
         return list(Session(scene, NARROW, resolution=(8, 8), spp=1).warnings)
 
     assert len(warnings(8)) == 1
-    assert warnings(9)[1] == "more than eight solids hold each other; a path forgets those beyond"
+    assert warnings(9)[1] == "more than eight solids are nested; a path keeps eight"
 
 
 @pytest.mark.parametrize("kind", ["gltf", "dielectric"])

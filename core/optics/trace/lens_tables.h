@@ -32,8 +32,7 @@ struct WavelengthScale {
     double wavelength(double l) const { return 1e3 / std::sqrt((l - offset) / scale); }
 };
 
-/// Transmittance of a surface in the kernel: none: 1. bare: Fresnel's formulas. film: the table of
-/// its films.
+/// Transmittance model of a surface: 1, Fresnel's formulas, or the table of its coating.
 enum class SurfaceLight : int { none, bare, film };
 
 /// Intersection routine of a surface.
@@ -68,13 +67,13 @@ struct LensTables {
     int surfaces = 0, stop = 0;
     float film_gap = 0;  // mm, last vertex to film (to the centre of a tilted film)
     FilmTables film;
-    std::vector<float> curvature, semi2, inner2, gap;
+    std::vector<float> curvature, semi2, inner2, gap;   // semi2, inner2: mm2, squared clear and inner radius
     std::vector<MetAs> met;
     std::vector<char> refracts;      // false: no change of index
     std::vector<ShapeTables> shape;  // for surfaces with MetAs::other
     std::vector<SurfaceLight> light;
     std::vector<FilmTable> films;      // for coated surfaces
-    std::vector<char> rarer_in_front;  // for coated surfaces: which cosine the table takes
+    std::vector<char> rarer_in_front;  // for coated surfaces: the table takes the cosine in the rarer medium
     int index_degree = 0;
     std::vector<float> index;  // [medium][power of l]
     AbsorptionTables absorption;

@@ -29,8 +29,8 @@ class OneWorld {
     }
 
     template <typename Path>
-    bool arrive(Path& path, Scene::Hit& found, int vertex, bool counts) const {
-        return path.arrive(found, vertex, counts);
+    bool arrive(Path& path, Scene::Hit& found, int vertex, bool gathers) const {
+        return path.arrive(found, vertex, gathers);
     }
     bool sees_background(PathState& path) const {
         return !(path.walk.unscattered && path.settings.background == Background::transparent);

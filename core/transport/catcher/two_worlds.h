@@ -70,7 +70,7 @@ class TwoWorlds {
 
     /// Processes a hit by Path::arrive(). The worlds part at an object. False: the path ends.
     template <typename Path>
-    bool arrive(Path& path, Scene::Hit& found, int vertex, bool counts);
+    bool arrive(Path& path, Scene::Hit& found, int vertex, bool gathers);
     /// False: the background does not contribute to the path.
     bool sees_background(PathState& path);
     /// Adds the background from the plate. False: the plate does not show it.
@@ -105,13 +105,13 @@ class TwoWorlds {
 };
 
 template <typename Path>
-bool TwoWorlds::arrive(Path& path, Scene::Hit& found, int vertex, bool counts) {
-    if (!parts_at(path, found)) return path.arrive(found, vertex, counts);
+bool TwoWorlds::arrive(Path& path, Scene::Hit& found, int vertex, bool gathers) {
+    if (!parts_at(path, found)) return path.arrive(found, vertex, gathers);
     const bool from_camera = path.walk.unscattered;   // the camera sees the object
     path.branch_off(0, [&] {
         state.world = World::with_objects;
         if (from_camera) state.camera_sees_catcher = false;
-        if (state.difference_weight > 0 && path.arrive(found, vertex, counts)) path.follow_to_end(vertex);
+        if (state.difference_weight > 0 && path.arrive(found, vertex, gathers)) path.follow_to_end(vertex);
     });
     // The world without objects has been branched off already, at the object with the sheet.
     if (from_camera && state.past_object == PastObject::through_sheet) return false;

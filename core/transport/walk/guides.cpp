@@ -11,14 +11,14 @@ void note_surface(PathState& path, const Material& material, const SurfaceHit& h
     const float share = path.walk.throughput.average();
     first.seen_albedo = first.seen_albedo + color * share;
     first.seen_normal = first.seen_normal + hit.ns * share;
-    path.walk.guided = true;
+    path.walk.guides_recorded = true;
 }
 
 void note_medium(PathState& path) {
-    if (!path.first_hit || path.walk.guided) return;
+    if (!path.first_hit || path.walk.guides_recorded) return;
     const float share = path.walk.throughput.average();
     path.first_hit->seen_albedo = path.first_hit->seen_albedo + Rgb{share, share, share};
-    path.walk.guided = true;
+    path.walk.guides_recorded = true;
 }
 
 }  // namespace dg

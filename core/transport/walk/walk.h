@@ -14,12 +14,12 @@ namespace dg {
 struct LastVertex {
     Vec3f position;       // m
     float bsdf_pdf = 0;   // density of the ray's direction under BSDF sampling, 1/sr
-    int candidates = 1;   // light samples drawn at the vertex, for one that is traced (light_pick.h)
+    int candidates = 1;   // number of light samples drawn at the vertex; a single sample is traced (light_pick.h)
     bool delta = true;    // the lens or a delta lobe: light sampling cannot find emitters along the ray
     float window_distance = 0;   // m from the vertex to the ray's origin, if the ray starts at a window behind it; else 0
 
     /// Whether the ray starts at the vertex, not at a window behind it.
-    bool no_window_since() const { return window_distance == 0; }
+    bool starts_ray() const { return window_distance == 0; }
 };
 
 /// State of a path inside volumes and participating media.
@@ -38,13 +38,13 @@ struct WalkState {
     LightPathMis light_mis;
     int splits = 0;            // interfaces at which the path followed both lobes
     bool in_view = true;       // only windows and specular bounces since the camera
-    bool unscattered = true;   // only windows since the camera, or glass with see_through: surfaces cover the background
+    bool unscattered = true;   // only windows, or glass with see_through, since the camera: the next surface counts as coverage
     bool hero_only = false;    // only the hero wavelength is left, behind a dispersive interface
-    bool guided = false;       // the denoiser's guides have been recorded at a rough surface
+    bool guides_recorded = false;   // the denoiser's guides, at a rough surface
 
     /// This branch's share of the camera ray's light, without the eta^2 scaling of radiance.
     float share() const { return throughput.average() * eta_squared; }
-    /// The largest throughput of any wavelength, without that scaling.
+    /// The largest throughput of any wavelength, without the eta^2 scaling of radiance.
     float strength() const { return throughput.max() * eta_squared; }
 };
 

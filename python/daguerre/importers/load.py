@@ -38,12 +38,12 @@ def load(
         **options: Options of the format; None and empty values count as absent. USD: ``purpose``,
             names of purposes to draw besides ``default`` (default: ``("render",)``);
             ``camera_units``, unit of focal lengths and apertures, mm (default: a tenth of a scene
-            unit); ``moments``, begin and end of the time that will be drawn, s, with motion vectors
-            (default: any time; samples of points, joints and copies outside of it are not read);
-            ``in_process``, whether to read the stage in this process, which a damaged stage can
-            end. glTF: ``animated``, whether moments other than ``time`` will be drawn. pbrt and
-            Mitsuba: ``unit_m``, length of a unit, m (default: 1). Mitsuba: ``define``, values of
-            the file's parameters by name or as ``name=value``.
+            unit); ``moments``, begin and end of the time that will be drawn, s, including the time
+            that motion vectors need (default: any time; samples of points, joints and copies
+            outside of it are not read); ``in_process``, whether to read the stage in this process,
+            which a damaged stage can crash. glTF: ``animated``, whether moments other than ``time``
+            will be drawn. pbrt and Mitsuba: ``unit_m``, length of a unit, m (default: 1). Mitsuba:
+            ``define``, values of the file's parameters by name or as ``name=value``.
 
     Raises:
         InputError: The file cannot be used; the message names the file and the place in it. Or

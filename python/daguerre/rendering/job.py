@@ -60,7 +60,7 @@ class Job:
         written: Called when the files of a picture are written.
         skipped: Called with a picture that is complete already, so that it is not drawn.
         staged: Called with a frame's number and its scene, to add per-frame data such as a plate.
-        work_of: Makes the work of a picture; a cluster's work draws on other machines.
+        work_of: Makes the scheduler that draws a picture, here or on a cluster.
         done: Number of pictures that are complete.
     """
 
@@ -160,7 +160,7 @@ class Job:
         return self._chosen[camera.exposure]
 
     def origin_of(self, picture: Picture) -> Place:
-        """Returns the origin of a picture's scene: near the first camera, which a rig shares."""
+        """Returns the origin of a picture's scene, near the first camera: a rig shares it."""
         first, scene = self.pictures[0], self.scene_of(picture)
         camera = settled(first.view.camera(scene), scene.time)
         return origin_of(camera, scene.time, first.settings.film.resolution)
@@ -202,7 +202,7 @@ class Job:
         return session
 
     def _is_complete(self, picture: Picture) -> bool:
-        """Whether a frame's files exist; a single picture is never complete, but overwritten."""
+        """Whether all files of a frame exist; a single picture is always drawn again."""
         single = len(self.pictures) == 1 and picture.frame is None
         files = all(path.exists() for path in picture.output.written)
         return files and not single and not picture.output.checkpoint.exists()
@@ -288,8 +288,8 @@ class Drawing:
         """Saves the samples; after a second request, it keeps only the last checkpoint."""
         work = self.loop.work
         saved = self.loop.rescue() if self.control.stops < 2 else None
-        there = saved or (self.checkpoint.path if self.checkpoint.exists else None)
-        self.tell.stopped(Stopped(work.done(), work.total(), there, saved is not None))
+        kept = saved or (self.checkpoint.path if self.checkpoint.exists else None)
+        self.tell.stopped(Stopped(work.done(), work.total(), kept, saved is not None))
 
     def _snapshot(self) -> None:
         paths: list[Path] = [p.with_suffix(f".snapshot{p.suffix}") for p in self.output.paths]

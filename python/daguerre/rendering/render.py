@@ -46,7 +46,7 @@ def render(
     Args:
         scene: The scene.
         camera: Camera, or its name in the scene; default: the scene's own.
-        settings: How it is rendered; the keywords change it.
+        settings: Render settings; the keywords override them.
         checkpoint: File (.exr) that keeps the samples until the picture is complete. It is written
             every minute, and when ``progress`` stops the render. If it exists, the render continues
             from it.
@@ -130,7 +130,7 @@ def iter_render(
     Args:
         scene: The scene.
         camera: Camera, or its name in the scene; default: the scene's own.
-        settings: How it is rendered; the keywords change it.
+        settings: Render settings; the keywords override them.
         {keywords}
     """
     session = Session(scene, camera, settings=settings_of(settings, keywords))

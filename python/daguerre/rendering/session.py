@@ -54,7 +54,7 @@ class Session:
     Args:
         scene: The scene.
         camera: Camera, or its name in the scene; default: the scene's own.
-        settings: How it is rendered; the keywords change it.
+        settings: Render settings; the keywords override them.
         built: ``Session.built`` of another session of the same, unchanged scene; it is reused if
             both expose at the same time.
         piloted: ``light_plan.piloted`` of another session of the same picture; default: a pilot
@@ -317,7 +317,7 @@ class Session:
         Args:
             sums: Columns of its ``state``, by part.
             samples: Ranges [begin, end) of samples of every pixel that it drew.
-            until: One past the last part of ``round`` that it drew, from those drawn here on.
+            until: End of the parts of ``round`` that it drew, which follow those drawn here.
 
         Raises:
             UsageError: The sums are not ``Columns``, or a range is empty or invalid.
@@ -339,7 +339,7 @@ class Session:
         return identity.key(self)
 
     def expose(self, camera: Camera, metering: Mapping[str, Any] | None = None) -> None:
-        """Gives frames from now on the brightness of another camera; the samples stay.
+        """Applies the exposure of another camera to later frames; keeps the samples.
 
         Args:
             camera: Camera that sees the same light.
@@ -353,7 +353,7 @@ class Session:
         self.notes = [*prepared.notes, *self.light_plan.notes]
 
     def exposed(self, frame: Frame) -> Frame:
-        """Returns a frame of this session from before with the brightness of now."""
+        """Returns an earlier frame of this session with the current exposure."""
         prepared = self.prepared
         facts = camera_metadata(prepared.camera, prepared.setup, prepared.size[0])
         found = {**frame.metadata, **facts, "metering": None, **self.metering}

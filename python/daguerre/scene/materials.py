@@ -73,10 +73,10 @@ class Material(BriefRecord):
         interior: Medium inside a closed mesh, instead of the kind's absorption; None: no medium.
         exterior: Medium outside of the mesh, such as the interior of a mesh around it; None: the
             scene's fog.
-        nesting: Which of two overlapping solids is there: ``"contained"``, the inner one, else the
-            later one in the scene; a whole number, the one with the higher priority (contained:
-            0); ``"literal"``: the surface is an interface between both sides as given, for files of
-            pbrt and Mitsuba.
+        nesting: How overlapping solids replace each other: ``"contained"``, the inner replaces the
+            outer, else the later in the scene; a whole number, the higher priority (contained: 0);
+            ``"literal"``, none: the surface is an interface between both sides as given, for files
+            of pbrt and Mitsuba.
     """
 
     kind: Kind = field(default_factory=Diffuse)

@@ -37,7 +37,7 @@ from .iris import iris_of, mask_of
 from .near_clip import Directions
 from .resolved import Glass, ResolvedLens
 
-#: Lenses that are kept, and focuses of each.
+#: Number of cached lenses, and of cached focus distances of each.
 _KEPT = 16
 
 
@@ -108,7 +108,7 @@ class _Drawn:
 
 @dataclass(frozen=True)
 class _Exact:
-    """An exact lens, maybe by polynomials.
+    """A lens of the core: its exact surfaces, or polynomials fitted to them.
 
     Attributes:
         lens: The lens.
@@ -122,7 +122,7 @@ class _Exact:
 
 
 class _Glass:
-    """A lens by all that a camera sets of it; focused lenses are kept for the next picture.
+    """A lens as a camera sets it, with a cache of focused lenses for the next picture.
 
     Attributes:
         chosen: The lens at its zoom and f-stop.
@@ -247,7 +247,7 @@ def _notes(camera: Camera, chosen: _Chosen, whole: str | None) -> list[str]:
 
 
 def _stop_notes(camera: Camera, chosen: _Chosen) -> list[str]:
-    """Note that the lens is wide open, as its engraved stop is a little wider than it opens."""
+    """Note that the lens is wide open, since the stop is slightly wider than it opens."""
     if camera.t_stop is not None:
         widest = chosen.order.f_number / math.sqrt(chosen.transmittance)
         text = remark(chosen.lens.name, camera.t_stop, widest, "T")
@@ -305,7 +305,7 @@ def _focused(camera: Camera, chosen: _Chosen, distance: float) -> _InFocus:
         focus_from="sensor" if _from_sensor(camera) else "pupil",
     )
     found = focused(chosen.lens, setting)
-    if setting.from_sensor:  # the film's place is known now, and with it the way to the pupil
+    if setting.from_sensor:  # the film's position is known now: count from the pupil
         distance -= (found.film_z_mm - found.entrance_pupil_z) * 1e-3
     used = imperfect(found.lens, camera)
     return _InFocus(used, found.lens.first_order(), found.film_z_mm, distance, chosen.f_stop)

@@ -25,7 +25,7 @@ def overlap_notes(scene: Scene, built: _core.Scene) -> list[str]:
     if not found:
         return []
     parts = [
-        f"{_name(scene, higher)} is there, not {_name(scene, lower)} (by {by})"
+        f"{_name(scene, higher)} replaces {_name(scene, lower)} (by {by})"
         for lower, higher, by in found[:_LISTED]
     ]
     more = ", and others" if len(found) > len(parts) else ""
@@ -33,7 +33,7 @@ def overlap_notes(scene: Scene, built: _core.Scene) -> list[str]:
     if any(material.nesting == LITERAL for material in scene.materials):
         notes.append("literal interfaces among solids that overlap keep their own index")
     if built.nests_too_deeply:
-        notes.append("more than eight solids hold each other; a path forgets those beyond")
+        notes.append("more than eight solids are nested; a path keeps eight")
     return notes
 
 

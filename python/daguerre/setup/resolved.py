@@ -45,7 +45,7 @@ class Glass:
         transmittance: Share of the light on the axis that the glass transmits.
         h0: Illuminance on the axis by a world of 1 cd/m2, lux.
         fit: Quality of the polynomials, if the model has them.
-        whole: Note that it focuses as a whole although its product does not; None: no need.
+        whole: Note that the model moves the whole lens to focus, unlike the product; None: none.
     """
 
     lens: Lens

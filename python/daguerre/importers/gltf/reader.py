@@ -42,9 +42,9 @@ from .skins import Skins
 from .textures import Textures
 from .variants import Variants
 
-# Limit of entries in all lists of ``Scene.nodes``, which grow with the square of a chain of meshes.
+# Limit of entries in all lists of ``Scene.nodes``, which grow quadratically with nesting.
 _MAX_NODE_ENTRIES = 4_000_000
-# Limit of vertices that morphs, skins and flat nodes cannot share; it grows with the file.
+# Least limit of vertices that morphs, skins and nodes of zero scale copy; grows with the file.
 _MAX_COPIES = 1 << 24
 _BYTES_PER_COPY = 4
 
@@ -60,8 +60,8 @@ def read(
 ) -> Scene:
     """Reads a .glb or .gltf file.
 
-    A .glb may also hold a scene of Daguerre as it is (``scene/packed``), at its export's moment,
-    0 s. It is read in place of glTF's content, unless something else is asked for.
+    A .glb may also contain the exact scene of Daguerre (``scene/packed``), at time 0 s. It is read
+    instead of the glTF content, unless a time, a scene, a variant or animation is requested.
 
     Args:
         path: The file.
@@ -94,7 +94,7 @@ def read(
 
 
 def _packed(chunk: memoryview, path: Path, notes: Notes, *, other: bool) -> Scene | None:
-    """Reads a scene as it is; None, with a note, if it is another version's, or not asked for."""
+    """Reads the exact scene; None, with a note, if another version wrote it or ``other``."""
     if other:
         notes.add(
             "the exact scene is stored for the time of its export only: plain glTF is read instead"

@@ -30,7 +30,7 @@ from .transforms import Matrix, Moving, look_at, rotation, scaling, translation
 MAX_DEPTH = 10_000
 #: Largest number of a matrix: matrices of objects and instances are multiplied later.
 MAX_ENTRY = 1e100
-#: Directives before ``WorldBegin`` alone, and after it alone.
+#: Directives allowed only before ``WorldBegin``, and only after it.
 _OPTIONS = ("Accelerator", "Camera", "Film", "Integrator", "Option", "PixelFilter", "Sampler")
 _WORLD = (
     *("AreaLightSource", "AttributeBegin", "AttributeEnd", "LightSource", "Material"),
@@ -227,7 +227,7 @@ class Interpreter:
     def _on_CoordSysTransform(self, directive: Directive) -> None:
         name = directive.strings[0]
         if name not in self._systems:
-            sentence = "CoordSysTransform: a coordinate system without a name is left out"
+            sentence = "CoordSysTransform: an undefined coordinate system is left out"
             self._ledger.note(directive.place, sentence)
             return
         self._set(directive.place, transform=self._systems[name])
