@@ -293,7 +293,7 @@ void def_media(nb::class_<Builder>& c) {
              "Media on both sides of a material's surfaces; -1: none inside, outside that of the world. invisible: "
              "nothing else is there.")
         .def("set_nesting", &Builder::set_nesting, "material"_a, "priority"_a, "literal"_a,
-             "Where solids overlap, the one with the higher priority is there; literal: the surfaces are interfaces as "
+             "Where solids overlap, the higher priority replaces the lower; literal: the surfaces are interfaces as "
              "given, and never hidden.")
         .def("set_fog", [](Builder& b, int medium) { b.description.media.fog = medium; }, "medium"_a);
 }

@@ -18,11 +18,6 @@ struct Ray {
     bool without_objects = false;  // hits only catchers (scene/catcher.h)
 };
 
-/// Least t of a search that continues behind a lamp sphere hit at `t`, which bounds neither solids nor media.
-inline float behind_sphere(float t) {
-    return std::nextafter(t * (1 + 1e-5f), std::numeric_limits<float>::infinity());
-}
-
 /// Whether a ray tracer accepts the ray: no NaN or infinity, and no overflow in its arithmetic.
 inline bool is_traceable(Vec3f origin, Vec3f direction) {
     return std::abs(origin.x) + std::abs(origin.y) + std::abs(origin.z) + std::abs(direction.x) +

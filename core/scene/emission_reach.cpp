@@ -25,17 +25,14 @@ void widen(Vec3f& min, Vec3f& max, Vec3f a, Vec3f b) {
 
 /// Bounds of an instance over all times.
 Scene::Bounds Scene::bounds_of(std::uint32_t i) const {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const Instance& instance = description_.instances[i];
-    Bounds b{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
     if (instance.motion) {
         const Box box = intersector_->bounds_of_moving(i);
         return {to_float(box.min), to_float(box.max)};
     }
-    for (const Vec3f local : description_.meshes[instance.mesh].positions) {
-        const Vec3f p = instance.world_from_local.point(local);
-        widen(b.min, b.max, p, p);
-    }
+    Bounds b = Bounds::none();
+    for (const Vec3f local : description_.meshes[instance.mesh].positions)
+        b.hold(instance.world_from_local.point(local));
     const Vec3f around = reach_around(description_.meshes[instance.mesh], instance.world_from_local);
     return {b.min - around, b.max + around};
 }

@@ -52,12 +52,8 @@ Interior Scene::medium_around(Ray ray) const {
     ray.t_max = std::numeric_limits<float>::infinity();
     constexpr int kMost = 256;
     for (int i = 0; i < kMost; ++i) {
-        const auto raw = intersector_->intersect(ray);
+        const auto raw = first_surface(ray);
         if (!raw) return around;
-        if (raw->instance == RawHit::kSphere) {
-            ray.t_min = behind_sphere(raw->t);
-            continue;
-        }
         SurfaceHit hit;
         find_surface(ray, *raw, hit);
         if (media_[hit.instance].bounds) return medium_on(hit.instance, !hit.front);
@@ -66,6 +62,15 @@ Interior Scene::medium_around(Ray ray) const {
         ray.cone = cone;
     }
     return around;
+}
+
+/// Intersects the scene without lamp spheres, which bound neither solids nor media.
+std::optional<RawHit> Scene::first_surface(Ray ray) const {
+    for (;;) {
+        const auto raw = intersector_->intersect(ray);
+        if (!raw || raw->instance != RawHit::kSphere) return raw;
+        ray.t_min = std::nextafter(raw->t * (1 + 1e-5f), std::numeric_limits<float>::infinity());
+    }
 }
 
 /// Intersects the scene without surfaces that only separate media.

@@ -245,6 +245,7 @@ class Scene {
     Interior medium_behind(const Interior& here, std::uint32_t instance, const Interior& inside, bool bounds_volume,
                            bool entering) const;
     std::optional<RawHit> first_visible(Ray ray) const;
+    std::optional<RawHit> first_surface(Ray ray) const;
     void find_media();
     void find_solids();
     void cross_coincident(Solids& solids, const SurfaceHit& hit, bool onward) const;

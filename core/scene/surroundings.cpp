@@ -123,12 +123,8 @@ void Scene::leave_solids(Ray ray, const Use& use) const {
     Entered entered;
     ray.t_max = std::numeric_limits<float>::infinity();
     for (int i = 0; i < kMostHits; ++i) {
-        const auto raw = intersector_->intersect(ray);
+        const auto raw = first_surface(ray);
         if (!raw) return;
-        if (raw->instance == RawHit::kSphere) {
-            ray.t_min = behind_sphere(raw->t);
-            continue;
-        }
         SurfaceHit hit;
         find_surface(ray, *raw, hit);
         if (has_bounded_media_ && media_[hit.instance].bounds) {
