@@ -242,6 +242,13 @@ auto overlaps(const Scene& scene) {
     return first;
 }
 
+std::vector<std::uint32_t> nested_solids(const Scene& scene) {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t i = 0; i < scene.description().instances.size(); ++i)
+        if (scene.rank(i) > 0) found.push_back(i);
+    return found;
+}
+
 void bind_built_scene(nb::module_& m) {
     nb::class_<Scene>(m, "Scene")
         .def_prop_ro("triangle_count", &Scene::triangle_count)
@@ -255,7 +262,8 @@ void bind_built_scene(nb::module_& m) {
         .def_prop_ro("origin", [](const Scene& s) { return std::tuple{s.origin().x, s.origin().y, s.origin().z}; },
                      "Origin of the scene's frame in the world, m. Arguments and results are in the world.")
         .def_prop_ro("overlaps", &overlaps,
-                     "The first pairs of overlapping solids, as instances: lower, higher, which fills the space, and why.")
+                     "The first pairs of overlapping solids, as instances: lower, higher, which fills the space, and the reason.")
+        .def_prop_ro("nested_solids", &nested_solids, "Instances of solids that overlap others, in rising order.")
         .def_prop_ro("nests_too_deeply", &Scene::nests_too_deeply,
                      "Whether more solids are nested than a path can keep.")
         .def("surroundings", &surroundings, "point"_a, "time"_a,

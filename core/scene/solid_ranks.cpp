@@ -9,7 +9,7 @@
 namespace dg {
 namespace {
 
-constexpr std::size_t kMostOverlaps = 8;   // that are listed
+constexpr std::size_t kMostOverlaps = 8;   // that are listed, of each kind
 /// Boundaries closer than this fraction of their coordinates may be hit at the same place: 16 times SurfaceHit::error.
 constexpr float kTouch = 0x1p-17f;
 /// Cosine of the largest angle between triangles that touch along an area.
@@ -139,10 +139,20 @@ Contact contact_of(const SceneDescription& scene, const Nested& a, const Nested&
     return found;
 }
 
+bool is_inside(const Nested& inner, const Nested& outer) {
+    return outer.bounds.holds(inner.bounds) && !inner.bounds.holds(outer.bounds);
+}
+
+/// Whether priority or containment choose between two solids.
+bool is_decided(const Nested& a, const Nested& b) {
+    return a.priority != b.priority || is_inside(a, b) || is_inside(b, a);
+}
+
 Overlap described(const Nested& a, const Nested& b) {
     const auto& [low, high] = a.order() < b.order() ? std::tie(a, b) : std::tie(b, a);
     const char* by = low.priority != high.priority ? "priority"
-                     : low.depth != high.depth     ? "containment"
+                     : is_inside(high, low)        ? "containment"
+                     : low.depth != high.depth     ? "the depth of nesting"
                                                    : "the order of the file";
     return {low.instance, high.instance, by};
 }
@@ -168,7 +178,7 @@ Bounds bounds_over_time(const SceneDescription& scene, const Instance& instance)
 
 SolidRanks rank_solids(const SceneDescription& scene, const std::vector<BoundedSolid>& solids) {
     std::vector<Nested> nested = nesting_solids(scene, solids);
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> open, decided;   // the first pairs
     std::size_t searched = 0;
     each_meeting(std::span(nested), [&](Nested& a, Nested& b) {
         const Contact found = contact_of(scene, a, b, searched);
@@ -176,11 +186,12 @@ SolidRanks rank_solids(const SceneDescription& scene, const std::vector<BoundedS
         a.overlaps = b.overlaps = true;
         a.touches |= found.coplanar, b.touches |= found.coplanar;
         b.depth += a.bounds.holds(b.bounds), a.depth += b.bounds.holds(a.bounds);
+        auto& pairs = is_decided(a, b) ? decided : open;
         if (pairs.size() < kMostOverlaps) pairs.emplace_back(a.instance, b.instance);
         return true;
     });
     SolidRanks ranks;
-    if (pairs.empty()) return ranks;
+    if (open.empty() && decided.empty()) return ranks;
     std::ranges::sort(nested, {}, &Nested::order);
     ranks.of_instance.resize(scene.instances.size());
     ranks.touches.resize(scene.instances.size());
@@ -192,7 +203,8 @@ SolidRanks rank_solids(const SceneDescription& scene, const std::vector<BoundedS
     const auto of = [&](std::uint32_t instance) -> const Nested& {
         return nested[ranks.of_instance[instance] - 1];
     };
-    for (const auto& [a, b] : pairs) ranks.overlaps.push_back(described(of(a), of(b)));
+    for (const auto& pairs : {open, decided})
+        for (const auto& [a, b] : pairs) ranks.overlaps.push_back(described(of(a), of(b)));
     return ranks;
 }
 

@@ -32,7 +32,7 @@ struct Overlap {
 struct SolidRanks {
     std::vector<std::uint32_t> of_instance;   // 0: overlaps no other solid; empty: no solids overlap
     std::vector<char> touches;                // per instance: its boundary may be at the place of another
-    std::vector<Overlap> overlaps;            // the first ones
+    std::vector<Overlap> overlaps;            // the first ones by priority or containment, and the first others
     int deepest = 0;                          // the most solids with boxes that hold each other
 };
 

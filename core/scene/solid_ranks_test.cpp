@@ -59,6 +59,20 @@ TEST_CASE("the inner solid is there, then the later one; a priority comes first"
     CHECK(ranks_of(d).of_instance.empty());   // literal
 }
 
+TEST_CASE("overlaps that only the order of the file decides are listed beside many others") {
+    SceneDescription d = cubes({{1, {0, 0, 0}}});
+    for (int i = 0; i < 20; ++i) {
+        add(d, cube_mesh(), glass());
+        d.instances.back().world_from_local = {{.01f, 0, 0}, {0, .01f, 0}, {0, 0, .01f}, {.04f * float(i) - .5f, 0, 0}};
+    }
+    add(d, cube_mesh(), glass());
+    d.instances.back().world_from_local.origin = {1.6f, 0, 0};
+    const SolidRanks ranks = ranks_of(d);
+    CHECK(ranks.overlaps.size() == 9);
+    CHECK(std::string(ranks.overlaps.at(0).by) == "the order of the file");
+    CHECK(ranks.overlaps[0].higher == 21);
+}
+
 TEST_CASE("boundaries at the same place touch; boundaries that cross do not") {
     const SolidRanks same = ranks_of(cubes({{1, {0, 0, 0}}, {1, {2, 0, 0}}}));
     CHECK(same.touches.at(0));

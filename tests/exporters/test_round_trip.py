@@ -287,3 +287,18 @@ def test_a_light_profile_within_a_cone_comes_back_from_mitsuba(tmp_path: Path) -
         found += light.profile.factors(world @ pose[:3, :3]) * np.array(light.intensity)
         np.testing.assert_allclose(pose[:3, 3], (1, 2, 3), atol=1e-6)
     np.testing.assert_allclose(found, expected, atol=0.01 * expected.max())
+
+
+@pytest.mark.parametrize("suffix", [".pbrt", ".xml"])
+@pytest.mark.parametrize(("x", "nested"), [(0.1, True), (0.4, True), (2.5, False)])
+def test_solids_in_solids_are_told(x: float, nested: bool, suffix: str, tmp_path: Path) -> None:
+    """Other renderers do not nest: a bubble in glass is a ball of air in air there."""
+    scene = dg.Scene()
+    ball = outgoing_scenes.ball(scene, 12)
+    for place, size in ((0.0, 0.5), (x, 0.25)):
+        world = outgoing_scenes.placed(place, 0, 0, np.full(3, size))
+        scene.add_instance(ball, dg.Dielectric(1.0 + size), world, name=f"{size} m")
+    scene.add_camera("main", outgoing_scenes.camera())
+    notes = dg.export_scene(scene, tmp_path / f"scene{suffix}")
+    told = [note for note in notes if "written with its index against air" in note]
+    assert ["(2 uses, the first '0.5 m')" in note for note in told] == [True] * nested

@@ -5,12 +5,15 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.cli import main
+from daguerre.exporters.gltf import Glb, Shape
 from daguerre.rendering.session import Session
 from tests.support.scene.scenes import at, sphere
 
@@ -187,12 +190,64 @@ def test_light_paths_change_no_mean(camera_in: bool) -> None:
     assert on == pytest.approx(off, rel=0.02)
 
 
-def test_what_overlaps_is_told() -> None:
+def told(scene: dg.Scene) -> tuple[list[str], list[str]]:
+    """Warnings, and notes about overlaps."""
+    session = Session(scene, NARROW, resolution=(8, 8), spp=1)
+    return session.warnings, [note for note in session.notes if "overlap" in note]
+
+
+def two_blocks(shift: float, first: Any = "contained", second: Any = "contained") -> dg.Scene:
     scene = scene_of()
-    block(scene, (3, 3, 3), 0, solid(1.5), "glass")
-    block(scene, (2, 2, 1), 0, solid(1.0), "gap")
-    warnings = Session(scene, NARROW, resolution=(8, 8), spp=1).warnings
-    assert warnings == ["where solids overlap, 'gap' replaces 'glass' (by containment)"]
+    block(scene, (3, 3, 3), 0, solid(1.5, nesting=first), "glass")
+    block(scene, (2, 2, 1), shift, solid(1.0, nesting=second), "gap")
+    return scene
+
+
+@pytest.mark.parametrize(("shift", "first"), [(0, "contained"), (3, -1), (0, -1)])
+def test_a_clear_overlap_is_a_note(shift: float, first: Any) -> None:
+    by = "containment" if first == "contained" else "priority"
+    warnings, notes = told(two_blocks(shift, first))
+    assert warnings == []
+    assert notes == [f"where solids overlap, 'gap' replaces 'glass' (by {by})"]
+
+
+def test_an_unclear_overlap_is_a_warning() -> None:
+    warnings, notes = told(two_blocks(3))
+    assert notes == []
+    assert warnings == [
+        "where solids of equal priority overlap and neither is inside the other, 'gap' replaces "
+        "'glass' (by the order of the file); Material(nesting=) chooses another"
+    ]
+
+
+def test_an_unclear_overlap_is_told_beside_many_clear_ones() -> None:
+    scene = two_blocks(3)
+    small = scene.add_mesh(CUBE * 0.05, SIDES)
+    for k in range(20):
+        scene.add_instance(small, solid(1.0), at(-1.8 + 0.18 * k, 0, 0.5), name=f"bubble {k}")
+    warnings, notes = told(scene)
+    assert ["'gap' replaces 'glass'" in text for text in warnings] == [True]
+    assert ["(by containment)" in text for text in notes] == [True]
+
+
+def test_strict_accepts_bubbles_in_glass(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """No warning of a correct scene, and ``--strict`` draws it."""
+    glb = Glb("daguerre tests")
+    volume = {"KHR_materials_transmission": {"transmissionFactor": 1}}
+    volume["KHR_materials_volume"] = {"thicknessFactor": 1}
+    glass = glb.add_material("glass", extensions=volume)
+    points, faces, normals = sphere(12)
+    for name, size in (("glass", 1.0), ("bubble", 0.4)):
+        shape = Shape(points * size, normals, points[:, :2], faces)
+        glb.add_node(name, mesh=glb.add_mesh(name, shape, glass))
+    path = tmp_path / "bubbles.glb"
+    glb.write(path)
+    words = ["render", str(path), "--strict", "--res", "8x8", "--spp", "1"]
+    assert main([*words, "-o", str(tmp_path / "a.png")]) == 0
+    said = [line for line in capsys.readouterr().err.splitlines() if "overlap" in line]
+    assert said == ["daguerre: where solids overlap, 'bubble' replaces 'glass' (by containment)"]
 
 
 def test_more_solids_than_a_path_knows_are_told() -> None:
@@ -201,10 +256,10 @@ def test_more_solids_than_a_path_knows_are_told() -> None:
         for i in range(count):
             size = 3 - 0.2 * i
             block(scene, (size, size, size), 0, solid(1.1 + 0.01 * i), f"shell {i}")
-        return list(Session(scene, NARROW, resolution=(8, 8), spp=1).warnings)
+        return told(scene)[0]
 
-    assert len(warnings(8)) == 1
-    assert warnings(9)[1] == "more than eight solids are nested; a path keeps eight"
+    assert warnings(8) == []
+    assert warnings(9) == ["more than eight solids are nested; a path keeps eight"]
 
 
 @pytest.mark.parametrize("kind", ["gltf", "dielectric"])

@@ -17,6 +17,12 @@ from .parameters import DEFAULT
 from .prepare import prepare
 from .settings import RenderSettings
 
+#: Remark on a solid that overlaps another.
+LITERAL_THERE = (
+    "solid that overlaps another is written with its index against air: other renderers do not "
+    "nest solids, so light refracts and dims otherwise there"
+)
+
 
 @guarded
 def export_scene(
@@ -65,6 +71,8 @@ def _exported(
         notes.add(f"motion is left out: the scene is written as it is at {scene.time:g} s")
     if scene.plate is not None:
         notes.add("photograph on catchers is left out")
+    if nested := prepared.core_scene.nested_solids:
+        notes.add(LITERAL_THERE, len(nested), scene.instances[nested[0]].name)
     view = view_of(prepared.setup, notes)
     depth = settings.light.max_depth
     outgoing = Outgoing(scene, view, prepared.size, settings.sampling.most, depth, notes)

@@ -67,7 +67,7 @@ class Prepared:
     @property
     def notes(self) -> tuple[str, ...]:
         """Remarks for users."""
-        return (*self.setup.notes, *self.overscan_notes)
+        return (*self.setup.notes, *self.overscan_notes, *self.built.notes)
 
     @property
     def size(self) -> tuple[int, int]:

@@ -8,6 +8,7 @@ from daguerre.scene.far import ZERO, Place
 from daguerre.scene.scene import Scene
 
 from .content_hash import ContentHash
+from .nesting import overlap_notes
 from .scene import build
 
 
@@ -24,6 +25,7 @@ class BuiltScene:
         core: Scene of the core.
         warnings: A sentence for each motion that is only approximated, and for positions that files
             have rounded.
+        notes: A sentence about solids that replace each other where they overlap.
     """
 
     def __init__(
@@ -39,6 +41,7 @@ class BuiltScene:
             self._content = before._content
         self.warnings: list[str] = []
         self.core: _core.Scene = build(scene, interval, self.warnings, origin)
+        self.notes = overlap_notes(scene, self.core)
 
     def shows(self, scene: Scene, interval: tuple[float, float], origin: Place) -> bool:
         """Whether it was built from this scene, with this origin, for this interval.

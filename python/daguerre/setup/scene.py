@@ -17,7 +17,7 @@ from daguerre.scene.parts import Curves
 from daguerre.scene.scene import Scene
 
 from .media import add_media
-from .nesting import add_nesting, overlap_notes
+from .nesting import add_nesting, overlap_warnings
 from .origin import beyond, coarse, local_origin, may_be_far
 from .scene_motion import MovingParts
 from .shading import Profiles, add_environment, add_lights, add_materials
@@ -34,8 +34,8 @@ def build(
     Args:
         scene: The scene.
         interval: Exposure interval, s; None: the scene's ``time``.
-        notes: List that gets a sentence for each motion that is only approximated, and for fog that
-            keeps out light.
+        notes: List that gets a sentence for each motion that is only approximated, for fog that
+            keeps out light, and for solids that overlap in an unclear order.
         origin: Origin of the core's scene in the world, m (:mod:`.origin`).
 
     Raises:
@@ -56,7 +56,7 @@ def build(
         moving.finish()
         free = memory.left_bytes()
         made = builder.build(free_memory=0 if free is None else max(free, 1))
-        notes += overlap_notes(scene, made)
+        notes += overlap_warnings(scene, made)
         return made
 
 
