@@ -188,6 +188,12 @@ class Package:
         return ".".join(parts[:-1] if parts[-1] == "__init__" and len(parts) > 1 else parts)
 
     def _imports(self, path: Path, module: str) -> Iterator[Import]:
+        stub = path.with_suffix(".pyi")
+        if path.stem == "__init__" and stub.exists():  # names of the package, imported on first use
+            yield from self._imports_of(stub, module)
+        yield from self._imports_of(path, module)
+
+    def _imports_of(self, path: Path, module: str) -> Iterator[Import]:
         tree = ast.parse(path.read_text(encoding="utf-8"))
         within = module.split(".") if path.stem == "__init__" else module.split(".")[:-1]
         package = ["daguerre", *(part for part in within if part != "__init__")]

@@ -13,7 +13,6 @@ import pytest
 
 import daguerre as dg
 from daguerre import analysis, lenses
-from daguerre.analysis.figures import figures
 from daguerre.analysis.ghosts import Ghosts
 from daguerre.analysis.plotted import Plotted, Sectioned
 from daguerre.errors import UsageError
@@ -124,7 +123,6 @@ def test_axes_are_axes(results: dict[type, Any]) -> None:
 
 
 def test_a_data_sheet_is_a_page(results: dict[type, Any]) -> None:
-    assert analysis.data_sheet is figures
     made = analysis.data_sheet(results[analysis.Bench], psf_pixels=16)
     page = made.plot()
     assert len(page.axes) > 20

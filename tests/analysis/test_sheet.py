@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from daguerre import analysis, lenses
-from daguerre.analysis.figures import Figures, figures
+from daguerre.analysis.figures import Figures, data_sheet
 from daguerre.analysis.illumination import within_light
 from daguerre.lenses.agreement import agreement
 from daguerre.plots.lens_outline import element_outlines, sag
@@ -19,7 +19,7 @@ HEADS = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
 
 @pytest.fixture(scope="module")
 def made() -> Figures:
-    return figures(analysis.set_up(lenses.load("tessar-50mm-f2.8"), f_stop=8), psf_pixels=32)
+    return data_sheet(analysis.set_up(lenses.load("tessar-50mm-f2.8"), f_stop=8), psf_pixels=32)
 
 
 @pytest.mark.parametrize("kind", ["svg", "png", "pdf"])

@@ -130,6 +130,13 @@ ELSEWHERE = GOOD["lenses/lens.py"].replace("def _zoom", "def zoomed")
             "bad.py:2: points up: importers",
         ),
         ({"scene/bad.py": TYPED}, "bad.py:3: points up: pictures"),
+        (
+            {
+                "scene/__init__.py": "",
+                "scene/__init__.pyi": "\nfrom daguerre.rendering.job import Job as Job",
+            },
+            "scene/__init__.py:2: points up: rendering",
+        ),
         ({"checks.py": "import daguerre"}, "checks.py:1: points up: __init__"),
         (
             {"scene/bad.py": "from daguerre import Scene"},

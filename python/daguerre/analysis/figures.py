@@ -95,7 +95,7 @@ class Figures(BriefRecord, Plotted):
 
 
 @guarded
-def figures(bench: Bench, *, psf_pixels: int = 64) -> Figures:
+def data_sheet(bench: Bench, *, psf_pixels: int = 64) -> Figures:
     """Computes every figure.
 
     Args:

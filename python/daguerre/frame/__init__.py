@@ -1,24 +1,5 @@
 """Pictures in memory: linear frames, raw mosaics, display pictures."""
 
-from __future__ import annotations
+from daguerre.lazy_imports import lazy_names
 
-from typing import TYPE_CHECKING
-
-from daguerre.lazy_imports import lazy_attributes
-
-if TYPE_CHECKING:
-    from .frame import Frame
-    from .picture import Picture
-    from .raw import Raw
-
-__all__ = ["Frame", "Picture", "Raw"]
-
-if not TYPE_CHECKING:  # type checkers use the imports above, and report other names
-    __getattr__, __dir__ = lazy_attributes(
-        __name__,
-        {
-            "Frame": "frame",
-            "Picture": "picture",
-            "Raw": "raw",
-        },
-    )
+__getattr__, __dir__, __all__ = lazy_names(__name__, __file__)

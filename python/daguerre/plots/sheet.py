@@ -6,7 +6,7 @@ import io
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from daguerre.analysis.bench import Bench
-from daguerre.analysis.figures import Figures, figures
+from daguerre.analysis.figures import Figures, data_sheet
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,7 +54,7 @@ def sheet(bench: Bench, kind: str = "svg") -> bytes:
     Returns:
         The file's bytes.
     """
-    return page(figures(bench), kind)
+    return page(data_sheet(bench), kind)
 
 
 def page(made: Figures, kind: str = "svg") -> bytes:

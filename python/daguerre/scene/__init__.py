@@ -1,20 +1,5 @@
 """Scenes: meshes, instances, materials, lights, cameras, environment, and their motion."""
 
-from __future__ import annotations
+from daguerre.lazy_imports import lazy_names
 
-from typing import TYPE_CHECKING
-
-from daguerre.lazy_imports import lazy_attributes
-
-if TYPE_CHECKING:
-    from .scene import Scene
-
-__all__ = ["Scene"]
-
-if not TYPE_CHECKING:  # type checkers use the imports above, and report other names
-    __getattr__, __dir__ = lazy_attributes(
-        __name__,
-        {
-            "Scene": "scene",
-        },
-    )
+__getattr__, __dir__, __all__ = lazy_names(__name__, __file__)

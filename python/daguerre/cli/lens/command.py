@@ -132,9 +132,9 @@ def _write_figures(
     item: Lens, bench: Bench, plot: Path | None, wavelength: float, *, json: bool
 ) -> None:
     """Makes the figures once, for the page and for JSON."""
-    from daguerre.analysis.figures import figures
+    from daguerre.analysis.figures import data_sheet
 
-    made = figures(bench)
+    made = data_sheet(bench)
     if plot is not None:
         from daguerre.plots.sheet import page
 

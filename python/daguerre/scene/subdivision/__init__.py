@@ -12,25 +12,6 @@ SIGGRAPH, 295; DeRose, Kass and Truong 1998, SIGGRAPH, 85; the subdivision rules
 documents.
 """
 
-from __future__ import annotations
+from daguerre.lazy_imports import lazy_names
 
-from typing import TYPE_CHECKING
-
-from daguerre.lazy_imports import lazy_attributes
-
-if TYPE_CHECKING:
-    from .refiner import Refiner
-    from .rules import Rules, Subdivision, edges_of_chains
-
-__all__ = ["Refiner", "Rules", "Subdivision", "edges_of_chains"]
-
-if not TYPE_CHECKING:  # type checkers use the imports above, and report other names
-    __getattr__, __dir__ = lazy_attributes(
-        __name__,
-        {
-            "Refiner": "refiner",
-            "Rules": "rules",
-            "Subdivision": "rules",
-            "edges_of_chains": "rules",
-        },
-    )
+__getattr__, __dir__, __all__ = lazy_names(__name__, __file__)
