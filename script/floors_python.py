@@ -98,7 +98,7 @@ FACES = {
         *("header", "layout", "facts", "color_space"),  # their headers
     },
     "pictures.reading": {"read", "source", "kinds", "size"},
-    "shading.materialx": {"document", "elements", "graph"},
+    "shading.materialx": {"document", "graph"},
     "importers.gltf": {"reader"},
     "importers.mitsuba": {"reader"},
     "importers.pbrt": {"reader"},

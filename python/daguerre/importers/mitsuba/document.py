@@ -18,7 +18,7 @@ from daguerre.files.budget import Budget
 from daguerre.files.includes import Includes
 from daguerre.files.json_item import Item, short
 from daguerre.files.reading import read_bytes
-from daguerre.shading.materialx.elements import MAX_BYTES, MAX_ELEMENTS, Element, parse
+from daguerre.files.xml_elements import MAX_BYTES, MAX_ELEMENTS, Element, parse
 
 from .files import Files
 from .ledger import Entry, Ledger

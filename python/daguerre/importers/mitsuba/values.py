@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from daguerre.files.json_item import short
-from daguerre.shading.materialx.elements import Element
+from daguerre.files.xml_elements import Element
 
 from .ledger import Entry
 from .numbers import numbers

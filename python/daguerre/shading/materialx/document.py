@@ -16,8 +16,8 @@ from daguerre.errors import InputError
 from daguerre.files.json_item import short
 from daguerre.files.notes import Notes
 from daguerre.files.reading import read_bytes
+from daguerre.files.xml_elements import Element, parse
 
-from .elements import Element, parse
 from .graph import MAX_NODES, Constant, Graph, Link, Node
 from .values import fail, value_of
 

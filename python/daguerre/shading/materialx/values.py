@@ -9,8 +9,8 @@ import math
 
 from daguerre.errors import InputError
 from daguerre.files.json_item import short
+from daguerre.files.xml_elements import Element
 
-from .elements import Element
 from .graph import SIZES
 
 #: Units of length, m, and of angle, degrees.

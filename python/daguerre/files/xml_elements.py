@@ -1,4 +1,4 @@
-"""Elements of an XML text with their places, for documents that keep values in attributes.
+"""Elements of an XML text with their places.
 
 Document types are refused, and with them entities, through which a small file can grow without
 bounds or read other files.
@@ -7,24 +7,43 @@ bounds or read other files.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
 from daguerre.errors import InputError
-from daguerre.files.xml_text import xml_errors
 
 #: White space before the declaration, which XML forbids and other readers of MaterialX pass over.
 _LATE = re.compile(rb"\A(\s+)(<\?xml\b[^>]*\?>)")
 #: Comments. XML forbids two hyphens in them; pugixml, which Mitsuba and MaterialX use, does not.
 _COMMENT = re.compile(rb"(?<=<!--).*?(?=-->)", re.DOTALL)
+#: Code of expat for a text that ends before its root element does, and our words for it.
+_ENDS = expat.errors.codes[expat.errors.XML_ERROR_NO_ELEMENTS]
+_CUT = "empty or truncated file"
 MAX_DEPTH = 64
 MAX_ELEMENTS = 1_000_000
 MAX_BYTES = 64 << 20
 
 
+@contextmanager
+def xml_errors(file: str) -> Iterator[None]:
+    """Turns errors of expat, and of values that are read meanwhile, into ``InputError``."""
+    try:
+        yield
+    except expat.ExpatError as error:
+        place = f"line {error.lineno}, column {error.offset + 1}"
+        reason = _CUT if error.code == _ENDS else expat.ErrorString(error.code)
+        raise InputError(f"{file}: XML: {place}: {reason}") from None
+    except InputError:
+        raise
+    except (LookupError, ValueError) as error:  # an encoding that nobody knows; huge numbers
+        raise InputError(f"{file}: XML: {error}") from None
+
+
 @dataclass(eq=False)
 class Element:
-    """An element, its attributes and its children; ``line`` and ``column`` are for messages."""
+    """An element of a text; ``line`` and ``column`` are for messages."""
 
     tag: str
     attributes: dict[str, str]
@@ -32,6 +51,7 @@ class Element:
     column: int
     parent: Element | None = None
     children: list[Element] = field(default_factory=list)
+    text: list[str] = field(default_factory=list)  # between tags, in pieces
 
     def get(self, name: str) -> str:
         """Value of an attribute; empty if missing."""
@@ -73,8 +93,10 @@ class _ElementReader:
         self.open: list[Element] = []
         self.count = 0
         self.parser = expat.ParserCreate()
+        self.parser.buffer_text = True
         self.parser.StartElementHandler = self._start
         self.parser.EndElementHandler = self._end
+        self.parser.CharacterDataHandler = self._text
         self.parser.StartDoctypeDeclHandler = self._refuse_type
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
@@ -93,6 +115,11 @@ class _ElementReader:
 
     def _end(self, tag: str) -> None:
         self.open.pop()
+
+    def _text(self, text: str) -> None:
+        found = self.open[-1].text
+        if found or not text.isspace():  # indentation alone is no text
+            found.append(text)
 
     def _refuse_type(self, *about: object) -> None:
         self._fail("document types and entities are not supported, got <!DOCTYPE>")
