@@ -8,7 +8,7 @@ namespace dg {
 namespace {
 
 template <typename Lens>
-void reproject_alone(const Lens& lens, std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
+void reproject_still(const Lens& lens, std::span<const CameraRay> rays, std::span<const float> wavelength_nm,
                      std::span<Reprojection> out) {
     if constexpr (ReprojectsByWavelength<Lens>)
         lens.reproject(rays, wavelength_nm, out);
@@ -20,8 +20,8 @@ void generate_states(const LensMotion& motion, std::span<const CameraSample> sam
     by_state(motion, samples.size(), [&](std::size_t i) { return samples[i].time; },
              [&](const LensKind& lens, const auto& members) {
                  std::vector<CameraRay> drawn(members.size());
-                 const std::vector<CameraSample> some = taken(samples, members);
-                 std::visit([&](const auto& kind) { kind.generate(some, drawn); }, lens);
+                 const std::vector<CameraSample> in_state = gathered(samples, members);
+                 std::visit([&](const auto& kind) { kind.generate(in_state, drawn); }, lens);
                  for (std::size_t i = 0; i < members.size(); ++i) rays[members[i]] = drawn[i];
              });
 }
@@ -31,9 +31,9 @@ void reproject_states(const LensMotion& motion, std::span<const CameraRay> rays,
     by_state(motion, rays.size(), [&](std::size_t i) { return rays[i].ray.time; },
              [&](const LensKind& lens, const auto& members) {
                  std::vector<Reprojection> found(members.size());
-                 const std::vector<CameraRay> some = taken(rays, members);
-                 const std::vector<float> nm = taken(wavelength_nm, members);
-                 std::visit([&](const auto& kind) { reproject_alone(kind, some, nm, found); }, lens);
+                 const std::vector<CameraRay> in_state = gathered(rays, members);
+                 const std::vector<float> nm = gathered(wavelength_nm, members);
+                 std::visit([&](const auto& kind) { reproject_still(kind, in_state, nm, found); }, lens);
                  for (std::size_t i = 0; i < members.size(); ++i) out[members[i]] = found[i];
              });
 }
@@ -61,7 +61,7 @@ void reproject(const Camera& camera, std::span<const CameraRay> rays, std::span<
     const LensMotion& motion = camera.lens_motion;
     std::visit(
         [&]<typename Lens>(const Lens& lens) {
-            if (motion.times.empty()) return reproject_alone(lens, rays, wavelength_nm, out);
+            if (motion.times.empty()) return reproject_still(lens, rays, wavelength_nm, out);
             if constexpr (ChangesEvenly<Lens>)
                 for (std::size_t i = 0; i < rays.size(); ++i)
                     with_numbers(motion, lens, rays[i].ray.time, [&](const Lens& now, const auto& numbers) {

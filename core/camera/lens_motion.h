@@ -27,11 +27,11 @@ void by_state(const LensMotion& motion, std::size_t count, const auto& time_of, 
 }
 
 template <typename T>
-std::vector<T> taken(std::span<const T> from, std::span<const std::uint32_t> members) {
-    std::vector<T> some;
-    some.reserve(members.size());
-    for (const std::uint32_t i : members) some.push_back(from[i]);
-    return some;
+std::vector<T> gathered(std::span<const T> from, std::span<const std::uint32_t> members) {
+    std::vector<T> values;
+    values.reserve(members.size());
+    for (const std::uint32_t i : members) values.push_back(from[i]);
+    return values;
 }
 
 /// Calls use(lens, numbers) with the numbers interpolated at a time; other parameters (the iris)

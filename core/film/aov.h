@@ -14,7 +14,7 @@ struct AovSample {
     float depth = 0;  // m, along the camera's -z
     Vec3f position, normal, albedo;
     std::uint32_t object_id = 0;  // instance index + 1; 0: no hit
-    Vec3f seen_albedo{}, seen_normal{};   // denoiser guides, seen through mirrors and glass; 0: no hit
+    Vec3f guide_albedo{}, guide_normal{};   // denoiser guides, seen through mirrors and glass; 0: no hit
 };
 
 struct AovChannel {
@@ -36,12 +36,12 @@ inline constexpr std::array kAovChannels{
     AovChannel{"albedo.B", false, [](const AovSample& s) { return s.albedo.z; }},
     // Means over all samples that passed the lens, as in the picture: guides have the same defocus and motion blur, and
     // edges fade into the sky.
-    AovChannel{"denoise_albedo.R", false, [](const AovSample& s) { return s.seen_albedo.x; }},
-    AovChannel{"denoise_albedo.G", false, [](const AovSample& s) { return s.seen_albedo.y; }},
-    AovChannel{"denoise_albedo.B", false, [](const AovSample& s) { return s.seen_albedo.z; }},
-    AovChannel{"denoise_normal.X", false, [](const AovSample& s) { return s.seen_normal.x; }},
-    AovChannel{"denoise_normal.Y", false, [](const AovSample& s) { return s.seen_normal.y; }},
-    AovChannel{"denoise_normal.Z", false, [](const AovSample& s) { return s.seen_normal.z; }},
+    AovChannel{"denoise_albedo.R", false, [](const AovSample& s) { return s.guide_albedo.x; }},
+    AovChannel{"denoise_albedo.G", false, [](const AovSample& s) { return s.guide_albedo.y; }},
+    AovChannel{"denoise_albedo.B", false, [](const AovSample& s) { return s.guide_albedo.z; }},
+    AovChannel{"denoise_normal.X", false, [](const AovSample& s) { return s.guide_normal.x; }},
+    AovChannel{"denoise_normal.Y", false, [](const AovSample& s) { return s.guide_normal.y; }},
+    AovChannel{"denoise_normal.Z", false, [](const AovSample& s) { return s.guide_normal.z; }},
 };
 
 }  // namespace dg

@@ -15,9 +15,9 @@ struct ObjectCover {
 };
 
 /// Light and coverage that a camera sample adds to a pixel. In a film with catchers, `light` is the light of the objects
-/// alone; `with` and `without` are the light of catchers and background with the objects present and absent.
+/// alone; the two others are the light of catchers and background with the objects present and absent.
 struct CameraLight {
-    Spectrum light{0.f}, with{0.f}, without{0.f};
+    Spectrum light{0.f}, with_objects{0.f}, without_objects{0.f};
     float white = 0;     // weight of the sample: the light of a white world
     float covered = 0;   // part of `white` that objects cover
     static constexpr std::size_t kMostObjects = 4;

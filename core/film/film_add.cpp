@@ -110,8 +110,8 @@ void Film::add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& w
 /// Adds light of catchers. Returns false if the sample is bad. The picture over a plate is `light` + `with` - `without`, so
 /// its squares go into the variance, and add_light() then adds no squares.
 bool Film::add_catchers(std::size_t i, const Wavelengths& wavelengths, const CameraLight& arrived) {
-    const Vec3f light = wavelengths.to_xyz(arrived.light), with = wavelengths.to_xyz(arrived.with),
-                without = wavelengths.to_xyz(arrived.without);
+    const Vec3f light = wavelengths.to_xyz(arrived.light), with = wavelengths.to_xyz(arrived.with_objects),
+                without = wavelengths.to_xyz(arrived.without_objects);
     for (int k = 0; k < 3; ++k)
         if (!fits_film(light[k]) || !fits_film(with[k]) || !fits_film(without[k])) return false;
     XyzSums* const catchers = &of<Layer::catchers>()[2 * i];
@@ -119,8 +119,8 @@ bool Film::add_catchers(std::size_t i, const Wavelengths& wavelengths, const Cam
     of<Layer::sums>()[i].add_squares(rgb_from_xyz_, light + with - without);
     const int channels = count_of(Layer::channels);
     if (!channels) return true;
-    add_channels(of<Layer::catcher_channels>(), 2 * i, channels, responses_.of(wavelengths, arrived.with));
-    add_channels(of<Layer::catcher_channels>(), 2 * i + 1, channels, responses_.of(wavelengths, arrived.without));
+    add_channels(of<Layer::catcher_channels>(), 2 * i, channels, responses_.of(wavelengths, arrived.with_objects));
+    add_channels(of<Layer::catcher_channels>(), 2 * i + 1, channels, responses_.of(wavelengths, arrived.without_objects));
     return true;
 }
 

@@ -412,7 +412,7 @@ TEST_CASE("a bad sample adds no coverage") {
         Film film(layout), alone(layout);
         for (Film* f : {&film, &alone}) f->add(0, 0, 0, w, good);
         film.add(0, 0, 1, w, {.light = worst, .white = 1, .covered = 0.5f, .objects = {{{4, 0.5f}}}, .object_count = 1});
-        if (catchers) film.add_locked(0, 0, 2, w, {.light = 1.f, .with = worst, .white = 1, .covered = 0.25f});
+        if (catchers) film.add_locked(0, 0, 2, w, {.light = 1.f, .with_objects = worst, .white = 1, .covered = 0.25f});
         CHECK(film.bad_sample_count() == (catchers ? 2 : 1));
         CHECK(film.coverage() == std::vector{1.f});
         for (const char* layer : {"coverage", "objects"})

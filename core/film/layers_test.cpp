@@ -199,7 +199,7 @@ TEST_CASE("means of a layer of plain sums are read by its name") {
     const Wavelengths w = Wavelengths::sample(0.5f);
     for (int i = 0; i < 2; ++i) {
         film.count(0, 0, i);
-        film.add(0, 0, i, w, {.light = 1.f, .with = 2.f, .without = 4.f});
+        film.add(0, 0, i, w, {.light = 1.f, .with_objects = 2.f, .without_objects = 4.f});
     }
     const std::vector<float> sums = film.means("sums"), set = film.means("catchers");
     REQUIRE((sums.size() == 3 && set.size() == 6));

@@ -150,23 +150,24 @@ class CameraPass {
     /// so that it is the covered fraction of the pixel's light.
     template <typename ToFilm>
     CameraLight arrived(const Sample& sample, const Sight& sight, Spectrum weight, const ToFilm& to_film) const {
-        CameraLight all{.light = to_film(sight.light)};
-        if (film_.count_of(Layer::catchers)) all.with = to_film(sight.with), all.without = to_film(sight.without);
-        if (!film_.count_of(Layer::coverage)) return all;
+        CameraLight total{.light = to_film(sight.light)};
+        if (film_.count_of(Layer::catchers)) 
+            total.with_objects = to_film(sight.with_objects), total.without_objects = to_film(sight.without_objects);
+        if (!film_.count_of(Layer::coverage)) return total;
         const Spectrum luminance = sample.wavelengths.d65 * sample.wavelengths.cie_y * weight;
-        all.white = 4 * luminance.average();
-        all.covered = all.white * sight.covers.sum();
-        if (film_.count_of(Layer::objects)) add_objects(all, sight.covers);
-        return all;
+        total.white = 4 * luminance.average();
+        total.covered = total.white * sight.covers.sum();
+        if (film_.count_of(Layer::objects)) add_objects(total, sight.covers);
+        return total;
     }
 
     /// Adds coverage by object ID: instances by index, followed by sphere lights.
-    void add_objects(CameraLight& all, const Covers& covers) const {
+    void add_objects(CameraLight& total, const Covers& covers) const {
         static_assert(CameraLight::kMostObjects >= Covers::kMost);
         for (const Cover& c : covers) {
             const bool sphere = c.instance >= Cover::kSpheres;
             const std::uint32_t object = sphere ? c.instance - Cover::kSpheres + instances_ : c.instance;
-            all.objects[all.object_count++] = {object, all.white * c.share};
+            total.objects[total.object_count++] = {object, total.white * c.share};
         }
     }
 
@@ -174,22 +175,22 @@ class CameraPass {
     /// is excluded from the balance heuristic over four heroes: another hero would have been refracted elsewhere in the
     /// scene, so its technique has density 0 for this path. This light has the weight of the hero's film sample alone.
     void splat(const Sample& sample, const CameraRay& camera_ray, std::span<const Reprojection> others,
-               const Sight& sight, Spectrum own) const {
+               const Sight& sight, Spectrum hero_weight) const {
         const Hero hero{sample.px, sample.pixel, camera_ray.ray.time, camera_ray.weight, camera_ray.aim_weight};
         PathSampler sampler = sample.sampler;
         const Landings landings = land(density_, settings_.sensor, hero, others, sampler.next_1d());
         for (const Landing& l : landings) {   // the hero's pixel is first
-            const auto to_film = [&](const Radiance& r) { return r.hero * own + r.any_hero * l.weight; };
+            const auto to_film = [&](const Radiance& r) { return r.hero * hero_weight + r.any_hero * l.weight; };
             film_.add_locked(l.pixel.x, l.pixel.y, sample.index, sample.wavelengths,
                              arrived(sample, sight, l.weight, to_film));
-            own = 0.f;
+            hero_weight = 0.f;   // the other pixels have none of the hero's light
         }
     }
 
     void add_aov(const Sample& sample, float time, const FirstHit& hit) const {
         AovSample aov{.hit = hit.found, .position = hit.position, .normal = hit.normal, .albedo = hit.albedo,
                       .object_id = hit.found ? hit.instance + 1 : 0,
-                      .seen_albedo = hit.seen_albedo, .seen_normal = hit.seen_normal};
+                      .guide_albedo = hit.guide_albedo, .guide_normal = hit.guide_normal};
         if (hit.found) {
             const Affine3d camera = camera_.world_from_camera.at(time);
             aov.depth = float(-dot(to_double(hit.position) - camera.origin, camera.z));

@@ -50,10 +50,10 @@ FirstHit look(const Scene& scene, int splits, Vec3f direction = {0, 0, -1}) {
         ray.direction = direction;
         FirstHit hit;
         radiance(scene, ray, wavelengths, sampler, settings, &hit, nullptr);
-        const Vec3f albedo = mean.seen_albedo, normal = mean.seen_normal;
+        const Vec3f albedo = mean.guide_albedo, normal = mean.guide_normal;
         mean = hit;
-        mean.seen_albedo = albedo + hit.seen_albedo * (1 / kWays);
-        mean.seen_normal = normal + hit.seen_normal * (1 / kWays);
+        mean.guide_albedo = albedo + hit.guide_albedo * (1 / kWays);
+        mean.guide_normal = normal + hit.guide_normal * (1 / kWays);
     }
     return mean;
 }
@@ -66,9 +66,9 @@ constexpr float kFace = 0.04f, kThrough = (1 - kFace) / (1 + kFace);
 TEST_CASE("before a wall the guides are its own albedo and normal") {
     const auto scene = before_wall([](SceneDescription&) {});
     const FirstHit hit = look(*scene, 2);
-    CHECK(hit.seen_albedo.x == doctest::Approx(kWall.x).epsilon(1e-3));
-    CHECK(hit.seen_albedo.z == doctest::Approx(kWall.z).epsilon(1e-3));
-    CHECK(hit.seen_normal.z == doctest::Approx(1).epsilon(1e-3));
+    CHECK(hit.guide_albedo.x == doctest::Approx(kWall.x).epsilon(1e-3));
+    CHECK(hit.guide_albedo.z == doctest::Approx(kWall.z).epsilon(1e-3));
+    CHECK(hit.guide_normal.z == doctest::Approx(1).epsilon(1e-3));
 }
 
 TEST_CASE("glass shows the wall behind it by the share of light that comes through, split or not") {
@@ -78,10 +78,10 @@ TEST_CASE("glass shows the wall behind it by the share of light that comes throu
             const auto scene = before_wall([&](SceneDescription& d) { add_pane(d, 0, dispersion); });
             const FirstHit hit = look(*scene, splits);
             CHECK(hit.position.z == doctest::Approx(-1));   // position remains the first surface's
-            CHECK(hit.seen_albedo.x == doctest::Approx(kWall.x * kThrough).epsilon(0.01));
-            CHECK(hit.seen_albedo.y == doctest::Approx(kWall.y * kThrough).epsilon(0.01));
-            CHECK(hit.seen_normal.z == doctest::Approx(kThrough).epsilon(0.01));
-            CHECK_FALSE(hit.seen_albedo.x == doctest::Approx(kWall.x).epsilon(0.01));
+            CHECK(hit.guide_albedo.x == doctest::Approx(kWall.x * kThrough).epsilon(0.01));
+            CHECK(hit.guide_albedo.y == doctest::Approx(kWall.y * kThrough).epsilon(0.01));
+            CHECK(hit.guide_normal.z == doctest::Approx(kThrough).epsilon(0.01));
+            CHECK_FALSE(hit.guide_albedo.x == doctest::Approx(kWall.x).epsilon(0.01));
         }
 }
 
@@ -97,19 +97,19 @@ TEST_CASE("a mirror shows what it reflects, of its own colour, and not what come
     const auto scene = Scene::build(std::move(d));
     const FirstHit hit = look(*scene, 2);
     CHECK(hit.position.z == doctest::Approx(-2));
-    CHECK(std::abs(hit.seen_normal.x) > 0.5f);
-    CHECK(std::abs(hit.seen_normal.z) < 1e-3f);
-    CHECK(hit.seen_albedo.x == doctest::Approx(kWall.x).epsilon(1e-3));
-    CHECK(hit.seen_albedo.x / hit.seen_albedo.y == doctest::Approx(kWall.x / kWall.y).epsilon(1e-3));
+    CHECK(std::abs(hit.guide_normal.x) > 0.5f);
+    CHECK(std::abs(hit.guide_normal.z) < 1e-3f);
+    CHECK(hit.guide_albedo.x == doctest::Approx(kWall.x).epsilon(1e-3));
+    CHECK(hit.guide_albedo.x / hit.guide_albedo.y == doctest::Approx(kWall.x / kWall.y).epsilon(1e-3));
 }
 
 TEST_CASE("frosted glass hides what is behind it, and nothing is 0") {
     const auto frosted = before_wall([](SceneDescription& d) { add_pane(d, 0.3f); });
     const FirstHit hit = look(*frosted, 2);
-    CHECK(hit.seen_normal.z == doctest::Approx(1).epsilon(1e-3));
+    CHECK(hit.guide_normal.z == doctest::Approx(1).epsilon(1e-3));
     const FirstHit sky = look(*before_wall([](SceneDescription& d) { add_pane(d); }), 2, {0, 0, 1});
     CHECK_FALSE(sky.found);
-    CHECK(sky.seen_albedo == Vec3f{0, 0, 0});
+    CHECK(sky.guide_albedo == Vec3f{0, 0, 0});
 }
 
 }  // namespace dg

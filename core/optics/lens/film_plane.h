@@ -14,13 +14,13 @@ struct FilmPlane {
 };
 
 /// Film plane in float for the kernels. The distance of the centre is in LensTables::film_gap.
-struct FilmTables {
+struct FilmPlaneTables {
     bool across = true;   // perpendicular to the axis and centred on it
     float center_x = 0, center_y = 0;
     float x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, normal[3] = {0, 0, 1};
 
-    FilmTables() = default;
-    explicit FilmTables(const FilmPlane& plane)
+    FilmPlaneTables() = default;
+    explicit FilmPlaneTables(const FilmPlane& plane)
         : across(false), center_x(float(plane.center.x)), center_y(float(plane.center.y)) {
         const Vec3d n = plane.normal();
         for (int k = 0; k < 3; ++k)

@@ -34,7 +34,7 @@ HWY_INLINE void take_step(const GhostLens& ghosts, const GhostStep& step, bool m
     } else {
         pass_surface<kSign>(lens, i, hit[0], a), pass_surface<kSign>(lens, i, hit[1], b);
     }
-    if (lens.met[i] == MetAs::other && lens.shape[i].placed)
+    if (lens.intersection[i] == Intersection::other && lens.shape[i].placed)
         leave_frame(lens.shape[i], a), leave_frame(lens.shape[i], b);
 }
 

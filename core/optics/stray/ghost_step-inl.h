@@ -37,11 +37,11 @@ HWY_INLINE void turn_back(const GhostLens& ghosts, int i, const LaneHit& hit, La
 template <int kSign>
 HWY_INLINE void meet_any(const LensTables& lens, int i, LaneRays& a, LaneRays& b, LaneHit (&hit)[2]) {
     const LaneVec pa{a.x, a.y, a.z}, da{a.dx, a.dy, a.dz}, pb{b.x, b.y, b.z}, db{b.dx, b.dy, b.dz};
-    switch (lens.met[i]) {
-        case MetAs::plane:
+    switch (lens.intersection[i]) {
+        case Intersection::plane:
             hit[0] = meet_plane<kSign>(pa, da), hit[1] = meet_plane<kSign>(pb, db);
             return;
-        case MetAs::sphere:
+        case Intersection::sphere:
             hit[0] = meet_sphere<kSign>(lens.curvature[i], pa, da);
             hit[1] = meet_sphere<kSign>(lens.curvature[i], pb, db);
             return;

@@ -46,7 +46,7 @@ HWY_INLINE void bend(const LensTables& lens, int i, const LaneHit& hit, OpenLane
         const V squared = hn::NegMulAdd(hn::Mul(mu, mu), hn::Sub(one, hit.cos1_squared), one);
         lose(o, hn::Ge(squared, hn::Zero(D())), hn::Neg(squared));
         const V cos2 = hn::Sqrt(hn::Max(squared, hn::Zero(D())));
-        if (lens.light[i] != SurfaceLight::none) {
+        if (lens.fresnel[i] != FresnelModel::none) {
             const LaneCrossing at{r.n, hit.cos1, n2, cos2, r.l};
             r.transmittance = hn::Mul(r.transmittance, transmission_lanes<kSign>(lens, i, at));
         }
@@ -84,7 +84,7 @@ HWY_INLINE void open_steps(const GhostLens& ghosts, const GhostStep& step, bool 
     meet_any<kSign>(lens, step.surface, a.r, b.r, hit);
     open_step<kSign>(ghosts, step, mirrored, crossing, hit[0], a);
     open_step<kSign>(ghosts, step, mirrored, crossing, hit[1], b);
-    if (lens.met[step.surface] == MetAs::other && lens.shape[step.surface].placed)
+    if (lens.intersection[step.surface] == Intersection::other && lens.shape[step.surface].placed)
         leave_frame(lens.shape[step.surface], a.r), leave_frame(lens.shape[step.surface], b.r);
 }
 

@@ -24,7 +24,7 @@ HWY_INLINE V dot3(const float (&a)[3], V x, V y, V z) {
 /// y) are film coordinates; `toward` is true for rays that approach the film.
 HWY_INLINE void lens_to_film(const LensTables& lens, const LaneRays& r, V mx, V my, V& x, V& y,
                              M& toward) {
-    const FilmTables& f = lens.film;
+    const FilmPlaneTables& f = lens.film;
     const V one = constant(1), px = hn::Sub(r.x, constant(f.center_x)),
             py = hn::Sub(r.y, constant(f.center_y)), pz = hn::Sub(r.z, constant(lens.film_gap));
     const V along = dot3(f.normal, mx, my, one);

@@ -16,7 +16,7 @@ namespace dg {
 namespace HWY_NAMESPACE {
 
 /// Points of a tilted film in the lens frame; z is relative to the centre of the film.
-HWY_INLINE void film_to_lens(const FilmTables& f, V x, V y, LaneRays& r) {
+HWY_INLINE void film_to_lens(const FilmPlaneTables& f, V x, V y, LaneRays& r) {
     r.x = hn::MulAdd(x, constant(f.x[0]), hn::MulAdd(y, constant(f.y[0]), constant(f.center_x)));
     r.y = hn::MulAdd(x, constant(f.x[1]), hn::MulAdd(y, constant(f.y[1]), constant(f.center_y)));
     r.z = hn::MulAdd(x, constant(f.x[2]), hn::Mul(y, constant(f.y[2])));

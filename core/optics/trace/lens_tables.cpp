@@ -67,11 +67,12 @@ void fill_iris(IrisTables& t, const Iris& iris, double radius) {
         t.support_x.push_back(mm(p.x)), t.support_y.push_back(mm(p.y));
 }
 
-MetAs met_as(const Surface& s) {
+Intersection intersection_of(const Surface& s) {
     const bool sphere =
         s.shape == Shape::conic && s.conic == 0 && s.asphere.empty() && !is_placed(s) &&
         s.ripple.rms_nm == 0;
-    return !sphere ? MetAs::other : s.curvature == 0 ? MetAs::plane : MetAs::sphere;
+    if (!sphere) return Intersection::other;
+    return s.curvature == 0 ? Intersection::plane : Intersection::sphere;
 }
 
 void fill_asphere(ShapeTables& t, const SurfaceForm& f, double scale) {
@@ -126,7 +127,7 @@ void add_absorption(AbsorptionTables& t, const Glass& glass, const WavelengthSca
 
 }  // namespace
 
-FilmTable film_table(const SurfaceCoating& coating, const Glass& before,
+CoatingTable coating_table(const SurfaceCoating& coating, const Glass& before,
                      const Glass& after, const WavelengthScale& scale) {
     if (coating.films.empty()) return {};
     const double n = refractive_index(before, kFilmWavelength) /
@@ -143,7 +144,7 @@ FilmTable film_table(const SurfaceCoating& coating, const Glass& before,
             return surface_transmittance(coating, n1, cos1, n2, cos2, nm);
         };
     };
-    return fit_film_table(at, std::max(n, 1 / n),
+    return fit_coating_table(at, std::max(n, 1 / n),
                           2 * kPiD * thickness * (1 / kShortest - 1 / kLongest),
                           kFilmTolerance);
 }
@@ -172,7 +173,7 @@ LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_aper
         const Glass& before = i ? lens.surfaces[i - 1].glass : lens.object_medium;
         t.curvature.push_back(float(s.curvature));
         t.gap.push_back(float(s.thickness));
-        t.met.push_back(met_as(s));
+        t.intersection.push_back(intersection_of(s));
         t.shape.push_back(shape_tables(s, tracer.form(i)));
         const bool bounded =
             clear_apertures && std::isfinite(clear_radius(s)) && !(iris && i == t.stop);
@@ -185,12 +186,12 @@ LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_aper
         const bool same = std::equal(after, t.index.end(), after - (t.index_degree + 1));
         t.refracts.push_back(!same);
         const SurfaceCoating coating = coating_at(lens, i);
-        t.light.push_back(same || !coating.reflects ? SurfaceLight::none
-                          : coating.films.empty()   ? SurfaceLight::bare
-                                                    : SurfaceLight::film);
+        t.fresnel.push_back(same || !coating.reflects ? FresnelModel::none
+                            : coating.films.empty()   ? FresnelModel::bare
+                                                      : FresnelModel::coated);
         t.rarer_in_front.push_back(refractive_index(before, kFilmWavelength) <
                                    refractive_index(s.glass, kFilmWavelength));
-        t.films.push_back(film_table(coating, before, s.glass, t.scale));
+        t.coatings.push_back(coating_table(coating, before, s.glass, t.scale));
     }
     if (absorbs(lens)) {
         add_absorption(t.absorption, lens.object_medium, t.scale);
@@ -205,7 +206,7 @@ LensTables make_lens_tables(const Tracer& tracer, const FilmPlane& film, bool cl
     LensTables t = make_lens_tables(tracer, film.center.z, clear_apertures, iris, iris_radius);
     const bool across = film.x == Vec3d{1, 0, 0} && film.y == Vec3d{0, 1, 0} &&
                         film.center.x == 0 && film.center.y == 0;
-    if (!across) t.film = FilmTables(film);
+    if (!across) t.film = FilmPlaneTables(film);
     return t;
 }
 

@@ -5,7 +5,7 @@
 
 #include "optics/lens/film_plane.h"
 #include "optics/lens/stop.h"
-#include "optics/trace/film_table.h"
+#include "optics/trace/coating_table.h"
 #include "optics/trace/trace.h"
 
 namespace dg {
@@ -33,10 +33,10 @@ struct WavelengthScale {
 };
 
 /// Transmittance model of a surface: 1, Fresnel's formulas, or the table of its coating.
-enum class SurfaceLight : int { none, bare, film };
+enum class FresnelModel : int { none, bare, coated };
 
 /// Intersection routine of a surface.
-enum class MetAs : int { plane, sphere, other };
+enum class Intersection : int { plane, sphere, other };
 
 /// Form of a surface other than a centred plane or sphere (form.h), in float. The asphere is a
 /// polynomial in (r / scale)^2, so its coefficients are lengths.
@@ -66,13 +66,13 @@ struct AbsorptionTables {
 struct LensTables {
     int surfaces = 0, stop = 0;
     float film_gap = 0;  // mm, last vertex to film (to the centre of a tilted film)
-    FilmTables film;
+    FilmPlaneTables film;
     std::vector<float> curvature, semi2, inner2, gap;   // semi2, inner2: mm2, squared clear and inner radius
-    std::vector<MetAs> met;
+    std::vector<Intersection> intersection;
     std::vector<char> refracts;      // false: no change of index
-    std::vector<ShapeTables> shape;  // for surfaces with MetAs::other
-    std::vector<SurfaceLight> light;
-    std::vector<FilmTable> films;      // for coated surfaces
+    std::vector<ShapeTables> shape;  // for surfaces with Intersection::other
+    std::vector<FresnelModel> fresnel;
+    std::vector<CoatingTable> coatings;     // for coated surfaces
     std::vector<char> rarer_in_front;  // for coated surfaces: the table takes the cosine in the rarer medium
     int index_degree = 0;
     std::vector<float> index;  // [medium][power of l]
@@ -83,7 +83,7 @@ struct LensTables {
 };
 
 /// Transmittance table of a coated surface; empty if it has no films.
-FilmTable film_table(const SurfaceCoating& coating, const Glass& before,
+CoatingTable coating_table(const SurfaceCoating& coating, const Glass& before,
                      const Glass& after, const WavelengthScale& scale);
 
 LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_apertures,

@@ -129,7 +129,7 @@ HWY_INLINE void pass_surface(const LensTables& lens, int i, const LaneHit& hit,
             hn::NegMulAdd(hn::Mul(mu, mu), hn::Sub(one, hit.cos1_squared), one);
         const V cos2 = hn::Sqrt(cos2_squared);
         ok = hn::And(ok, hn::Ge(cos2_squared, hn::Zero(D())));
-        if (lens.light[i] != SurfaceLight::none) {
+        if (lens.fresnel[i] != FresnelModel::none) {
             const LaneCrossing at{r.n, hit.cos1, n2, cos2, r.l};
             r.transmittance =
                 hn::Mul(r.transmittance, transmission_lanes<kSign>(lens, i, at));
@@ -227,11 +227,11 @@ HWY_INLINE void cross_surface(const LensTables& lens, int i, LaneRays& a, LaneRa
         pass_surface<kSign>(lens, i, meet({a.x, a.y, a.z}, {a.dx, a.dy, a.dz}), a);
         pass_surface<kSign>(lens, i, meet({b.x, b.y, b.z}, {b.dx, b.dy, b.dz}), b);
     };
-    switch (lens.met[i]) {
-        case MetAs::plane:
+    switch (lens.intersection[i]) {
+        case Intersection::plane:
             return both([](const LaneVec& p, const LaneVec& d)
                             HWY_ATTR { return meet_plane<kSign>(p, d); });
-        case MetAs::sphere:
+        case Intersection::sphere:
             return both([&](const LaneVec& p, const LaneVec& d) HWY_ATTR {
                 return meet_sphere<kSign>(lens.curvature[i], p, d);
             });

@@ -34,8 +34,8 @@ struct LaneCrossing {
     V l;
 };
 
-/// Transmittance of a coated surface from its table (film_table.h).
-HWY_INLINE V film_lanes(const FilmTable& table, V cosine, V l) {
+/// Transmittance of a coated surface from its table (coating_table.h).
+HWY_INLINE V coating_lanes(const CoatingTable& table, V cosine, V l) {
     const V x = hn::MulAdd(cosine, constant(2), constant(-1));
     const V root = hn::MulAdd(cosine, constant(table.pole), constant(1));
     const float* c = table.coefficients.data();
@@ -62,9 +62,9 @@ HWY_INLINE V bare_lanes(V n1, V cos1, V n2, V cos2) {
 /// surface_transmittance() (coating.h) of surface i; kSign is +1 toward the film.
 template <int kSign>
 HWY_INLINE V transmission_lanes(const LensTables& lens, int i, const LaneCrossing& at) {
-    if (lens.light[i] == SurfaceLight::film) {
+    if (lens.fresnel[i] == FresnelModel::coated) {
         const bool rarer_first = bool(lens.rarer_in_front[i]) == (kSign > 0);
-        return film_lanes(lens.films[i], rarer_first ? at.cos1 : at.cos2, at.l);
+        return coating_lanes(lens.coatings[i], rarer_first ? at.cos1 : at.cos2, at.l);
     }
     return bare_lanes(at.n1, at.cos1, at.n2, at.cos2);
 }

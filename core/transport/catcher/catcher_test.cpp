@@ -121,7 +121,7 @@ Sums all_of(const Scene& scene, std::uint64_t seed, PathSettings settings = {}) 
     Sums sums;
     for (int i = 0; i < kPaths; ++i) {
         const Sight s = look_at(scene, i, settings, seed);
-        const double with = s.with.sum().average(), without = s.without.sum().average();
+        const double with = s.with_objects.sum().average(), without = s.without_objects.sum().average();
         sums.light.push_back(s.light.sum().average());
         sums.with.push_back(s.light.sum().average() + with);
         sums.without.push_back(without);
@@ -151,8 +151,8 @@ TEST_CASE("a set without objects sends the same with and without them, to the bi
     for (int i = 0; i < 2000; ++i) {
         const Sight a = look_at(*caught, i, {}), b = look_at(*plain, i, {});
         for (int k = 0; k < kWavelengths; ++k) {
-            CHECK(a.with.sum()[k] == a.without.sum()[k]);
-            CHECK(a.with.sum()[k] == b.light.sum()[k]);
+            CHECK(a.with_objects.sum()[k] == a.without_objects.sum()[k]);
+            CHECK(a.with_objects.sum()[k] == b.light.sum()[k]);
             CHECK(a.light.sum()[k] == 0);
         }
         CHECK(a.covers.sum() == 0);
@@ -216,8 +216,8 @@ TEST_CASE("smooth glass covers what is behind it, or lets it pass unbent") {
         opaque += trace_camera_ray(*scene, ray, w, sampler, {}, nullptr, nullptr).covers.sum();
         const Sight s = trace_camera_ray(*scene, ray, w, same, through, nullptr, nullptr);
         open += 1 - s.covers.sum();
-        with += s.with.sum().average();
-        expected += s.without.sum().average();
+        with += s.with_objects.sum().average();
+        expected += s.without_objects.sum().average();
     }
     CHECK(opaque / kPaths == doctest::Approx(1).epsilon(1e-4));
     const double passed = open / kPaths;

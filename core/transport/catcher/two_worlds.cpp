@@ -14,15 +14,15 @@ void TwoWorlds::gather(PathState& path, Spectrum light, bool hero, float weight)
     };
     if (state.plate_shown) {   // the plate holds the light of the world without objects: only the difference is missing
         const float factor = state.world == World::both ? 0 : state.world == World::with_objects ? weight : -weight;
-        return add(state.camera_sees_catcher ? sight.with : sight.light, factor);
+        return add(state.camera_sees_catcher ? sight.with_objects : sight.light, factor);
     }
     if (!state.camera_sees_catcher) return add(sight.light, 1);
     // Behind an absent object, Sight::with gets the share of the ray that passes the object through glass.
     if (state.past_object == PastObject::object_absent) weight = 1 - share_through_glass_;
     // Behind a clear sheet, the branch without the object gathers Sight::without.
-    if (state.world != World::with_objects && state.past_object != PastObject::through_sheet) add(sight.without, 1);
+    if (state.world != World::with_objects && state.past_object != PastObject::through_sheet) add(sight.without_objects, 1);
     const float factor = state.world == World::both ? 1 : state.world == World::with_objects ? weight : 1 - weight;
-    add(sight.with, factor);
+    add(sight.with_objects, factor);
 }
 
 /// An emitter that BSDF sampling at the first catcher hits, in the world without objects only, is shadowed by an

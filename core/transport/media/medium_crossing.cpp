@@ -42,7 +42,7 @@ MediumEvent MediumCrossing::cross(float t, bool last) {
 }
 
 void MediumCrossing::cross_homogeneous(float t, bool last, MediumEvent& event) {
-    const Segment segment(coefficients_, t - walk_.ray.t_min, walk_.media.lanes, path_.wavelengths.secondary_ended);
+    const Segment segment(coefficients_, t - walk_.ray.t_min, walk_.media.wavelength_pdfs, path_.wavelengths.secondary_ended);
     if (!coefficients_.emission.is_black()) event.emitted = walk_.throughput * segment.emitted();
     if (last || coefficients_.scattering.is_black() || !(segment.collides() > 0)) {
         walk_.throughput *= segment.transmittance_to(segment.length());
@@ -123,7 +123,7 @@ void MediumCrossing::cross_grid(float t, bool last, MediumEvent& event) {
         return;
     }
     const Tracked tracked =
-        delta_tracking(ray, coefficients_, walk_.media.lanes, path_.wavelengths.secondary_ended, begin, end, random);
+        delta_tracking(ray, coefficients_, walk_.media.wavelength_pdfs, path_.wavelengths.secondary_ended, begin, end, random);
     if (!coefficients_.emission.is_black()) event.emitted = walk_.throughput * tracked.emitted;
     if (!take({tracked.weight, tracked.lanes})) return;
     if (!tracked.collided) {
@@ -138,7 +138,7 @@ void MediumCrossing::cross_grid(float t, bool last, MediumEvent& event) {
 /// False: the throughput is 0.
 bool MediumCrossing::take(const Segment::Onward& onward) {
     walk_.throughput *= onward.weight;
-    walk_.media.lanes = onward.lanes;
+    walk_.media.wavelength_pdfs = onward.lanes;
     return !walk_.throughput.is_black();
 }
 

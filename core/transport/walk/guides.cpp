@@ -9,15 +9,15 @@ void note_surface(PathState& path, const Material& material, const SurfaceHit& h
     if (!first.found) first = {true, hit.met(), hit.ns, color, hit.instance, {}, {}};
     if (smooth) return;
     const float share = path.walk.throughput.average();
-    first.seen_albedo = first.seen_albedo + color * share;
-    first.seen_normal = first.seen_normal + hit.ns * share;
+    first.guide_albedo = first.guide_albedo + color * share;
+    first.guide_normal = first.guide_normal + hit.ns * share;
     path.walk.guides_recorded = true;
 }
 
 void note_medium(PathState& path) {
     if (!path.first_hit || path.walk.guides_recorded) return;
     const float share = path.walk.throughput.average();
-    path.first_hit->seen_albedo = path.first_hit->seen_albedo + Rgb{share, share, share};
+    path.first_hit->guide_albedo = path.first_hit->guide_albedo + Rgb{share, share, share};
     path.walk.guides_recorded = true;
 }
 

@@ -24,7 +24,7 @@ struct FirstHit {
     bool found = false;
     Vec3f position, normal, albedo;   // m, world; unit
     std::uint32_t instance = 0;
-    Vec3f seen_albedo, seen_normal;   // guides: sums over branches, of the first rough surface times the throughput
+    Vec3f guide_albedo, guide_normal;   // guides: sums over branches, of the first rough surface times the throughput
 };
 
 /// Coverage of an object: the fraction of a ray's light that it blocks from the scene behind it.
@@ -64,11 +64,11 @@ class Covers {
 };
 
 /// Radiance and coverage of a camera ray. In a scene with catchers (catcher/two_worlds.h) `light` is the radiance of
-/// objects; `with` and `without` are the radiance of catchers and background, in the scene with the objects and in the
-/// scene without them. `light` + `with` is the radiance of the full scene. `without` includes catchers behind an object
-/// that covers them, as if it were absent.
+/// objects; `with_objects` and `without_objects` are the radiance of catchers and background, in the scene with the
+/// objects and in the scene without them. `light` + `with_objects` is the radiance of the full scene. `without_objects`
+/// includes catchers behind an object that covers them, as if it were absent.
 struct Sight {
-    Radiance light, with, without;
+    Radiance light, with_objects, without_objects;
     Covers covers;
 };
 

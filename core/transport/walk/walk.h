@@ -26,7 +26,7 @@ struct LastVertex {
 struct MediaState {
     Surroundings around;     // solids and media around the path
     float brightest = 0;     // highest illuminance by lamps along the path inside media, lux
-    Spectrum lanes{1.f};     // relative probability of each wavelength to have drawn the path (medium/segment.h)
+    Spectrum wavelength_pdfs{1.f};   // relative density with which each wavelength draws the path (medium/segment.h)
 };
 
 struct WalkState {

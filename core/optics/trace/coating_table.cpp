@@ -1,4 +1,4 @@
-#include "optics/trace/film_table.h"
+#include "optics/trace/coating_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +65,7 @@ std::vector<int> kept_terms(Grid& c, double tolerance) {
 
 }  // namespace
 
-FilmTable fit_film_table(const std::function<std::function<double(double)>(double)>& at,
+CoatingTable fit_coating_table(const std::function<std::function<double(double)>(double)>& at,
                          double n, double phase, double tolerance) {
     const double pole = std::sqrt(1 + n * n);
     // cos(phase l) needs a degree of about its argument, plus a margin for the coefficients' decay.
@@ -87,7 +87,7 @@ FilmTable fit_film_table(const std::function<std::function<double(double)>(doubl
         for (int m = j < int(kept.size()) ? kept[j] : 0; m < c.columns; ++m) c.at(j, m) = 0;
     for (int m = 0; m < c.columns; ++m) to_powers(&c.at(0, m), c.rows, c.columns);
     for (int j = 0; j < c.rows; ++j) to_powers(&c.at(j, 0), c.columns, 1);
-    FilmTable table{float(pole), {}, {}};
+    CoatingTable table{float(pole), {}, {}};
     for (int j = int(kept.size()) - 1; j >= 0; --j) {
         table.terms.push_back(kept[j]);
         for (int m = kept[j] - 1; m >= 0; --m)

@@ -1,4 +1,4 @@
-// film_table.h -- the transmittance of a coated surface as a polynomial, for the kernels.
+// coating_table.h -- the transmittance of a coated surface as a polynomial, for the kernels.
 //
 // T(c, l) = c P(x, l) / (1 + pole c)^2, where c is the cosine in the rarer medium, x = 2c - 1 and l
 // is the wavelength variable (lens_tables.h). T is analytic in c down to grazing incidence. Its
@@ -11,7 +11,7 @@
 
 namespace dg {
 
-struct FilmTable {
+struct CoatingTable {
     float pole = 0;
     std::vector<std::int32_t> terms;  // number of powers of l for each power of x, highest x first
     std::vector<float> coefficients;  // coefficients of these powers, highest l first
@@ -20,7 +20,7 @@ struct FilmTable {
 /// Fits T over cosines in [0, 1] and l in [-1, 1] within the absolute tolerance. at(l) returns T as
 /// a function of the cosine; n is the ratio of the indices; phase is half the change of the films'
 /// round-trip phase over the range of l.
-FilmTable fit_film_table(const std::function<std::function<double(double)>(double)>& at,
+CoatingTable fit_coating_table(const std::function<std::function<double(double)>(double)>& at,
                          double n, double phase, double tolerance);
 
 }  // namespace dg

@@ -1,4 +1,4 @@
-#include "optics/trace/film_table.h"
+#include "optics/trace/coating_table.h"
 
 #include <doctest/doctest.h>
 
@@ -12,7 +12,7 @@ using namespace dg;
 namespace {
 
 /// The table's value, computed in the kernel's order of operations and in float.
-float table_value(const FilmTable& t, float cosine, float l) {
+float table_value(const CoatingTable& t, float cosine, float l) {
     const float x = 2 * cosine - 1, root = 1 + t.pole * cosine;
     float sum = 0;
     const float* c = t.coefficients.data();
@@ -26,7 +26,7 @@ float table_value(const FilmTable& t, float cosine, float l) {
 }
 
 /// Largest error of a table over a grid of cosines and wavelengths.
-double worst_error(const FilmTable& t, const SurfaceCoating& coating, const Glass& rarer,
+double worst_error(const CoatingTable& t, const SurfaceCoating& coating, const Glass& rarer,
                    const Glass& denser) {
     const WavelengthScale scale = WavelengthScale::visible();
     double worst = 0;
@@ -63,10 +63,10 @@ TEST_CASE("tables of films stay within 1e-4 at all angles and wavelengths") {
                 const SurfaceCoating coating =
                     coat(preset, refractive_index(air, kFilmWavelength),
                          refractive_index(glass, kFilmWavelength));
-                const FilmTable t =
-                    film_table(coating, air, glass, WavelengthScale::visible());
-                const FilmTable back =
-                    film_table(coating, glass, air, WavelengthScale::visible());
+                const CoatingTable t =
+                    coating_table(coating, air, glass, WavelengthScale::visible());
+                const CoatingTable back =
+                    coating_table(coating, glass, air, WavelengthScale::visible());
                 CHECK(t.coefficients == back.coefficients);
                 INFO(int(preset) << " n " << n);
                 CHECK(worst_error(t, coating, air, glass) < 1e-4);
@@ -76,6 +76,6 @@ TEST_CASE("tables of films stay within 1e-4 at all angles and wavelengths") {
 }
 
 TEST_CASE("surfaces without films have no table") {
-    CHECK(film_table({}, Glass{}, Glass{ConstantIndex{1.5}, ""}, WavelengthScale::visible())
+    CHECK(coating_table({}, Glass{}, Glass{ConstantIndex{1.5}, ""}, WavelengthScale::visible())
               .terms.empty());
 }
