@@ -31,7 +31,7 @@ from .film import FilmSize
 from .ledger import Ledger
 from .realistic import lens_of
 from .seen import Seen
-from .state import Made
+from .state import Entity
 from .transforms import unit_of
 
 Array = NDArray[np.float64]
@@ -55,7 +55,7 @@ class Eye:
     """Values that readers of cameras need.
 
     Attributes:
-        made: Directive.
+        entity: Directive.
         film: Film.
         size: Length of a unit of the camera's space, m.
         unit: Length of a unit of the world, m.
@@ -64,7 +64,7 @@ class Eye:
         ledger: Counts directives.
     """
 
-    made: Made
+    entity: Entity
     film: FilmSize
     size: float
     unit: float
@@ -73,14 +73,14 @@ class Eye:
     ledger: Ledger
 
 
-def mirror_of(made: Made | None) -> Array:
+def mirror_of(entity: Entity | None) -> Array:
     """Scene from world of pbrt, (4, 4): the mirror image with a right-handed camera frame.
 
     pbrt's frame is left-handed, unless the camera's transform mirrors it.
     """
-    if made is None:
+    if entity is None:
         return _TURN.copy()
-    camera = made.state.transform.start @ _TURNS.get(made.kind, _TURN)
+    camera = entity.state.transform.start @ _TURNS.get(entity.kind, _TURN)
     return np.eye(4) if np.linalg.det(camera[:3, :3]) > 0 else _TURN.copy()
 
 
@@ -92,23 +92,23 @@ def read_camera(
     Raises:
         InputError: A parameter is wrong, or its kind is not supported.
     """
-    made = described.camera
-    if made is None:
+    entity = described.camera
+    if entity is None:
         return None
-    reader = _KINDS.get(made.kind)
+    reader = _KINDS.get(entity.kind)
     if reader is None:
-        made.place.fail(f"kind: wanted {', '.join(_KINDS)}, got {made.kind[:40]!r}")
-    pose, size = _pose(made, axes, ledger)
+        entity.place.fail(f"kind: wanted {', '.join(_KINDS)}, got {entity.kind[:40]!r}")
+    pose, size = _pose(entity, axes, ledger)
     if pose is None:
-        ledger.note(made.place, "a camera that is scaled to zero is left out")
+        ledger.note(entity.place, "a camera that is scaled to zero is left out")
         return None
-    eye = Eye(made, film, size, unit_of(axes), described.version, files, ledger)
+    eye = Eye(entity, film, size, unit_of(axes), described.version, files, ledger)
     lens = reader(eye)
     fields = {"transform": pose, **_shutter(eye), **_exposure(eye, lens), **lens.fields}
     if lens.ahead:
         fields["transform"] = _moved_ahead(pose, lens.ahead)
-    ledger.use(made.place)
-    ledger.tell_unread(made.parameters, made.place, made.kind)
+    ledger.use(entity.place)
+    ledger.tell_unread(entity.parameters, entity.place, entity.kind)
     try:
         camera = Camera(**fields)
         OPTICS.check(camera, "camera")
@@ -116,13 +116,13 @@ def read_camera(
         check_exposure(camera)
         return camera
     except (UsageError, InputError) as error:
-        made.place.fail(str(error))
+        entity.place.fail(str(error))
 
 
-def _pose(made: Made, axes: Array, ledger: Ledger) -> tuple[Any, float]:
+def _pose(entity: Entity, axes: Array, ledger: Ledger) -> tuple[Any, float]:
     """World from camera, rigid, and the scale that is left out."""
-    moving = made.state.transform.inverse(made.place)
-    turn = _TURNS.get(made.kind, _TURN)
+    moving = entity.state.transform.inverse(entity.place)
+    turn = _TURNS.get(entity.kind, _TURN)
     worlds = [axes @ world @ turn for world in (moving.start, moving.end)]
     lengths = np.linalg.norm(worlds[0][:3, :3], axis=0)
     rigid = [without_scale(world) for world in worlds]
@@ -147,7 +147,7 @@ def _moved_ahead(transform: Any, metres: float) -> Any:
 
 def _times(eye: Eye) -> tuple[float, float]:
     """When the shutter opens and closes, s."""
-    number = eye.made.parameters.number
+    number = eye.entity.parameters.number
     begin, end = number("shutteropen", 0.0), number("shutterclose", 1.0)
     return min(begin, end), max(begin, end)
 
@@ -161,7 +161,7 @@ def _exposure(eye: Eye, lens: Seen) -> dict[str, Any]:
     """Factor of pbrt on a picture, as EV, and the white."""
     begin, end = _times(eye)
     if lens.timed and end == begin:
-        eye.made.place.fail("shutteropen, shutterclose: the two times must differ")
+        eye.entity.place.fail("shutteropen, shutterclose: the two times must differ")
     gain = eye.film.gain * lens.weight * (end - begin if lens.timed else 1.0)
     return {
         "exposure_compensation": round(math.log2(gain), _DIGITS) + 0.0,
@@ -170,7 +170,7 @@ def _exposure(eye: Eye, lens: Seen) -> dict[str, Any]:
 
 
 def _perspective(eye: Eye) -> Seen:
-    parameters, film = eye.made.parameters, eye.film
+    parameters, film = eye.entity.parameters, eye.film
     number = parameters.number
     window = _window(eye)
     fov = number("fov", 90.0, 1e-4, 179.99)
@@ -200,14 +200,14 @@ def _perspective(eye: Eye) -> Seen:
 
 def _window(eye: Eye) -> tuple[float, float, float, float]:
     """Part of the image plane that the film shows, in units in which the short side is 2."""
-    aspect = eye.made.parameters.number("frameaspectratio", eye.film.aspect, 1e-3, 1e3)
-    given = eye.made.parameters.numbers("screenwindow", 4)
+    aspect = eye.entity.parameters.number("frameaspectratio", eye.film.aspect, 1e-3, 1e3)
+    given = eye.entity.parameters.numbers("screenwindow", 4)
     wide, high = (aspect, 1.0) if aspect > 1 else (1.0, 1 / aspect)
     window = (-wide, wide, -high, high)
     if given is not None:
         left, right, low, top = given.tolist()
         if not (left < right and low < top):
-            eye.made.place.fail("screenwindow: left must be below right, and bottom below top")
+            eye.entity.place.fail("screenwindow: left must be below right, and bottom below top")
         window = (left, right, low, top)
     shape = (window[1] - window[0]) / (window[3] - window[2])
     if not math.isclose(shape, eye.film.aspect, rel_tol=5e-3):
@@ -217,23 +217,23 @@ def _window(eye: Eye) -> tuple[float, float, float, float]:
 
 def _distance(distance: float, eye: Eye) -> float:
     if not distance > 0:
-        eye.made.place.fail("focaldistance: wanted a number above 0, got 0")
+        eye.entity.place.fail("focaldistance: wanted a number above 0, got 0")
     return math.inf if distance >= _FAR * eye.size else distance
 
 
 def _realistic(eye: Eye) -> Seen:
-    return lens_of(eye.made, eye.film, eye.unit, eye.files, eye.version, eye.ledger)
+    return lens_of(eye.entity, eye.film, eye.unit, eye.files, eye.version, eye.ledger)
 
 
 def _spherical(eye: Eye) -> Seen:
     usual = "equalarea" if eye.version == 4 else "equirectangular"
-    mapping = eye.made.parameters.text("mapping", usual)
+    mapping = eye.entity.parameters.text("mapping", usual)
     if mapping not in ("equirectangular", "equalarea"):
-        eye.made.place.fail(f"mapping: wanted equirectangular or equalarea, got {mapping[:40]!r}")
+        eye.entity.place.fail(f"mapping: wanted equirectangular or equalarea, got {mapping[:40]!r}")
     if mapping == "equalarea":
         eye.ledger.notes.add("a spherical camera with an equal-area map is drawn equirectangular")
     for name in ("lensradius", "focaldistance", "screenwindow", "frameaspectratio"):
-        eye.made.parameters.find(name)
+        eye.entity.parameters.find(name)
     width = eye.film.resolution[0] + eye.film.resolution[0] % 2
     projection = Projection.of_field("equirectangular", (width, width // 2), 360.0)
     return Seen({"projection": projection}, timed=eye.version == 4)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from daguerre.files.notes import Notes
 
-from .state import Made
+from .state import Entity
 
 Array = NDArray[np.float64]
 #: Bezier points of a segment of a B-spline of degree 2 and 3, from its control points.
@@ -38,41 +38,41 @@ class Strands:
         all: All directives.
     """
 
-    first: Made
+    first: Entity
     points: list[Array] = field(default_factory=list)
     widths: list[Array] = field(default_factory=list)
-    all: list[Made] = field(default_factory=list)
+    all: list[Entity] = field(default_factory=list)
 
-    def add(self, made: Made, notes: Notes) -> None:
+    def add(self, entity: Entity, notes: Notes) -> None:
         """Adds a strand.
 
         Raises:
             InputError: A parameter is wrong.
         """
-        points, widths = _strand(made, notes)
-        world = made.state.transform.start
+        points, widths = _strand(entity, notes)
+        world = entity.state.transform.start
         self.points.append(points @ world[:3, :3].T + world[:3, 3])
         self.widths.append(widths * abs(np.linalg.det(world[:3, :3])) ** (1 / 3))
-        self.all.append(made)
+        self.all.append(entity)
 
 
-def group_of(made: Made) -> tuple[object, ...]:
+def group_of(entity: Entity) -> tuple[object, ...]:
     """Values that the strands of a mesh share."""
-    state = made.state
+    state = entity.state
     material = state.material if isinstance(state.material, str) else id(state.material)
     return material, state.inside, state.outside, id(state.emission), state.reversed
 
 
-def _strand(made: Made, notes: Notes) -> tuple[Array, Array]:
-    parameters = made.parameters
+def _strand(entity: Entity, notes: Notes) -> tuple[Array, Array]:
+    parameters = entity.parameters
     kind = parameters.text("type", "flat")
     if kind not in ("flat", "ribbon", "cylinder"):
-        made.place.fail(f"type: wanted flat, ribbon or cylinder, got {kind[:40]!r}")
+        entity.place.fail(f"type: wanted flat, ribbon or cylinder, got {kind[:40]!r}")
     if kind != "cylinder":
         notes.add(f"a curve of type {kind!r} is drawn round")
     basis = parameters.text("basis", "bezier")
     if basis not in ("bezier", "bspline"):
-        made.place.fail(f"basis: wanted bezier or bspline, got {basis[:40]!r}")
+        entity.place.fail(f"basis: wanted bezier or bspline, got {basis[:40]!r}")
     degree = parameters.integer("degree", 3, 2, 3)
     for name in ("N", "splitdepth", "alpha"):
         parameters.find(name)
@@ -81,7 +81,7 @@ def _strand(made: Made, notes: Notes) -> tuple[Array, Array]:
     fits = len(points) > degree if basis == "bspline" else (len(points) - 1) % degree == 0
     if len(points) <= degree or not fits:
         wanted = "at least" if basis == "bspline" else f"a multiple of {degree} and 1, at least"
-        made.place.fail(f"P: wanted {wanted} {degree + 1} points, got {len(points)}")
+        entity.place.fail(f"P: wanted {wanted} {degree + 1} points, got {len(points)}")
     chain = _chain(points, basis, degree)
     width = parameters.number("width", 1.0, 0.0)
     ends = parameters.number("width0", width, 0.0), parameters.number("width1", width, 0.0)

@@ -9,7 +9,7 @@ from typing import Generic, TypeVar
 from daguerre.errors import suggest
 
 from .place import FilePlace
-from .state import Made
+from .state import Entity
 
 #: Names that may be defined anew; each time costs a copy of all names.
 MAX_REDEFINED = 1000
@@ -21,8 +21,8 @@ Key = TypeVar("Key")
 class Names(Generic[Key]):
     """Definitions by name.
 
-    Readers that hold ``now`` see later definitions, but a redefined name keeps its old definition
-    for them, as in pbrt-v3.
+    Readers that hold ``current`` see later definitions, but a redefined name keeps its old
+    definition for them, as in pbrt-v3.
 
     Args:
         what: Kind of the definitions, for messages.
@@ -30,21 +30,21 @@ class Names(Generic[Key]):
 
     def __init__(self, what: str) -> None:
         self.what = what
-        self.now: dict[Key, Made] = {}
+        self.current: dict[Key, Entity] = {}
         self._left = MAX_REDEFINED
 
-    def define(self, key: Key, made: Made) -> None:
+    def define(self, key: Key, entity: Entity) -> None:
         """Adds a definition.
 
         Raises:
             InputError: Names are defined anew too often.
         """
-        if key in self.now:
+        if key in self.current:
             self._left -= 1
             if self._left < 0:
-                made.place.fail(f"too many redefined {self.what}: the limit is {MAX_REDEFINED}")
-            self.now = dict(self.now)
-        self.now[key] = made
+                entity.place.fail(f"too many redefined {self.what}: the limit is {MAX_REDEFINED}")
+            self.current = dict(self.current)
+        self.current[key] = entity
 
 
 @dataclass(eq=False)
@@ -64,19 +64,19 @@ class Description:
     """
 
     version: int = 4
-    camera: Made | None = None
-    film: Made | None = None
-    pixel_filter: Made | None = None
-    lights: list[Made] = field(default_factory=list)
-    shapes: list[Made] = field(default_factory=list)
-    objects: dict[str, list[Made]] = field(default_factory=dict)
-    instances: list[Made] = field(default_factory=list)
+    camera: Entity | None = None
+    film: Entity | None = None
+    pixel_filter: Entity | None = None
+    lights: list[Entity] = field(default_factory=list)
+    shapes: list[Entity] = field(default_factory=list)
+    objects: dict[str, list[Entity]] = field(default_factory=dict)
+    instances: list[Entity] = field(default_factory=list)
     media: Names[str] = field(default_factory=lambda: Names("media"))
     textures: Names[tuple[str, str]] = field(default_factory=lambda: Names("textures"))
     materials: Names[str] = field(default_factory=lambda: Names("materials"))
 
 
-def named(names: Mapping[str, Made], name: str, place: FilePlace, what: str) -> Made:
+def named(names: Mapping[str, Entity], name: str, place: FilePlace, what: str) -> Entity:
     """Returns a definition.
 
     Raises:

@@ -19,7 +19,7 @@ from daguerre.shading.images import Images
 from .ledger import Ledger
 from .shapes import LocalMesh
 from .spectra import Color, Spectra, luminance, scaled
-from .state import Made
+from .state import Entity
 
 Array = NDArray[np.float64]
 #: Most groups of triangles with separate lights; more get the mean.
@@ -40,7 +40,7 @@ class Emission:
     color: Color = (0.0, 0.0, 0.0)
     two_sided: bool = False
     picture: str = ""
-    directive: Made | None = None
+    directive: Entity | None = None
 
 
 DARK = Emission()
@@ -61,37 +61,37 @@ class Emissions:
         self._version, self._ledger = version, ledger
 
     def of(
-        self, made: Made | None, surface: LocalMesh, world: Array
+        self, entity: Entity | None, surface: LocalMesh, world: Array
     ) -> list[tuple[Emission, NDArray[np.bool_] | None]]:
         """Light of a surface, and the triangles that emit it; None: all.
 
         Args:
-            made: Directive, or None.
+            entity: Directive, or None.
             surface: The surface.
             world: World from its space, shape (4, 4).
         """
-        if made is None:
+        if entity is None:
             return [(DARK, None)]
-        if made.kind not in ("diffuse", "area"):
-            sentence = f"an AreaLightSource of kind {made.kind[:40]!r} is left out"
-            self._ledger.note(made.place, sentence)
+        if entity.kind not in ("diffuse", "area"):
+            sentence = f"an AreaLightSource of kind {entity.kind[:40]!r} is left out"
+            self._ledger.note(entity.place, sentence)
             return [(DARK, None)]
-        emission, power = self._read(made)
-        self._ledger.use(made.place)
+        emission, power = self._read(entity)
+        self._ledger.use(entity.place)
         if power <= 0:
             return [(emission, None)]
         return self._by_power(emission, power, surface, world)
 
-    def _read(self, made: Made) -> tuple[Emission, float]:
-        parameters = made.parameters
+    def _read(self, entity: Entity) -> tuple[Emission, float]:
+        parameters = entity.parameters
         color = self._spectra.light(parameters.find("L"))
-        color = scaled_by(made, color, self._spectra)
+        color = scaled_by(entity, color, self._spectra)
         for name in ("nsamples", "samples"):
             parameters.find(name)
         name = parameters.text("filename")
-        emission = Emission(color, parameters.flag("twosided", False), name, made)
+        emission = Emission(color, parameters.flag("twosided", False), name, entity)
         power = parameters.number("power", -1.0)
-        self._ledger.tell_unread(parameters, made.place, made.kind)
+        self._ledger.tell_unread(parameters, entity.place, entity.kind)
         return emission, power
 
     def _by_power(
@@ -133,11 +133,11 @@ class Emissions:
         return luminance((means[0], means[1], means[2]))
 
 
-def scaled_by(made: Made, color: Color, spectra: Spectra) -> Color:
+def scaled_by(entity: Entity, color: Color, spectra: Spectra) -> Color:
     """Product of a light's color and its ``scale``, which is a color in pbrt-v3."""
-    found = made.parameters.find("scale")
+    found = entity.parameters.find("scale")
     if found is None or found.type in ("float", "integer"):
-        return scaled(color, made.parameters.number("scale", 1.0, 0.0))
+        return scaled(color, entity.parameters.number("scale", 1.0, 0.0))
     red, green, blue = (a * b for a, b in zip(color, spectra.coefficient(found), strict=True))
     return red, green, blue
 

@@ -25,7 +25,7 @@ from .files import Files
 from .ledger import Ledger
 from .octahedral import directions_of, panorama_of
 from .spectra import Color, Spectra, luminance, scaled
-from .state import Made
+from .state import Entity
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.float32]
@@ -68,15 +68,15 @@ class Skies:
         self._version, self._ledger = version, ledger
         self._left = _MOST_PICTURES
 
-    def read(self, made: Made) -> Sky | None:
+    def read(self, entity: Entity) -> Sky | None:
         """Reads a light; None, and a note: its picture is missing.
 
         Raises:
             InputError: A parameter or the picture is wrong.
         """
-        parameters = made.parameters
+        parameters = entity.parameters
         light = parameters.find("L")
-        color = scaled_by(made, self._spectra.light(light), self._spectra)
+        color = scaled_by(entity, self._spectra.light(light), self._spectra)
         illuminance = parameters.number("illuminance", -1.0)
         for name in ("samples", "nsamples"):
             parameters.find(name)
@@ -84,34 +84,34 @@ class Skies:
             self._ledger.notes.add("the portal of an infinite light is left out")
         old = parameters.text("mapname")
         name = parameters.text("filename") or old
-        self._ledger.tell_unread(parameters, made.place, made.kind)
+        self._ledger.tell_unread(parameters, entity.place, entity.kind)
         if not name:
-            self._ledger.use(made.place)
+            self._ledger.use(entity.place)
             factor = illuminance / math.pi if illuminance > 0 else 1.0
             return Sky(scaled(color, factor))
-        path = self._files.find(name, made.place, "filename")
+        path = self._files.find(name, entity.place, "filename")
         if path is None:
             sentence = "an infinite light whose picture is missing is left out"
-            self._ledger.note(made.place, sentence, name)
+            self._ledger.note(entity.place, sentence, name)
             return None
         self._left -= 1
         if self._left < 0:
-            made.place.fail(f"too many environment pictures: the limit is {_MOST_PICTURES}")
-        self._ledger.use(made.place)
-        turn = _orthogonal(self._axes @ made.state.transform.start)
-        return self._pictured(made, path, color, illuminance, turn, bool(old))
+            entity.place.fail(f"too many environment pictures: the limit is {_MOST_PICTURES}")
+        self._ledger.use(entity.place)
+        turn = _orthogonal(self._axes @ entity.state.transform.start)
+        return self._pictured(entity, path, color, illuminance, turn, bool(old))
 
     def _pictured(
-        self, made: Made, path: Path, color: Color, illuminance: float, turn: Array, old: bool
+        self, entity: Entity, path: Path, color: Color, illuminance: float, turn: Array, old: bool
     ) -> Sky:
-        with asked_by(made.place):
+        with asked_by(entity.place):
             image: Picture = formats.read("environment", path, self._ledger.notes)
         if old:
             if illuminance > 0:
                 self._ledger.notes.add("'illuminance' of a light of pbrt-v3 is left out")
             return Sky(color, resampled(image, turn @ _DOME, min(len(image), _MOST_ROWS)))
         if image.shape[0] != image.shape[1]:
-            made.place.fail(
+            entity.place.fail(
                 f"filename: {path}: wanted a square equal-area picture (imgtool makeequiarea), got "
                 f"{image.shape[1]} x {image.shape[0]} pixels"
             )

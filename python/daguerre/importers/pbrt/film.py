@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 
 from .ledger import Ledger
-from .state import Made
+from .state import Entity
 
 _V4, _V3 = (1280, 720), (640, 480)
 #: Parameters that only concern the file that pbrt writes.
@@ -41,16 +41,16 @@ class FilmSize:
         return self.resolution[0] / self.resolution[1]
 
 
-def film_of(made: Made | None, version: int, ledger: Ledger) -> FilmSize:
+def film_of(entity: Entity | None, version: int, ledger: Ledger) -> FilmSize:
     """Reads the film of a scene; default: pbrt's default film.
 
     Raises:
         InputError: A parameter is wrong.
     """
     usual = _V4 if version == 4 else _V3
-    if made is None:
+    if entity is None:
         return FilmSize(usual, _millimetres(usual, 35.0))
-    parameters = made.parameters
+    parameters = entity.parameters
     integer, number = parameters.integer, parameters.number
     resolution = (
         integer("xresolution", usual[0], 1, 1 << 16),
@@ -64,28 +64,28 @@ def film_of(made: Made | None, version: int, ledger: Ledger) -> FilmSize:
         if values is not None and values.tolist() != plain:
             ledger.notes.add(f"{name!r} of the film is left out: the whole picture is drawn")
     if version == 4:
-        gain, white = number("iso", 100.0, 1e-3, 1e9) / 100, _white(made, ledger)
+        gain, white = number("iso", 100.0, 1e-3, 1e9) / 100, _white(entity, ledger)
     else:
-        gain, white = _scale(made, ledger), None
-    if made.kind not in ("rgb", "image", "gbuffer", "spectral"):
-        ledger.notes.add(f"a Film of kind {made.kind[:40]!r} is read as 'rgb'")
-    ledger.use(made.place)
-    ledger.tell_unread(parameters, made.place, made.kind)
+        gain, white = _scale(entity, ledger), None
+    if entity.kind not in ("rgb", "image", "gbuffer", "spectral"):
+        ledger.notes.add(f"a Film of kind {entity.kind[:40]!r} is read as 'rgb'")
+    ledger.use(entity.place)
+    ledger.tell_unread(parameters, entity.place, entity.kind)
     return FilmSize(resolution, _millimetres(resolution, diagonal), gain, white)
 
 
-def _scale(made: Made, ledger: Ledger) -> float:
+def _scale(entity: Entity, ledger: Ledger) -> float:
     """Factor of pbrt-v3's film; 0, which makes a black picture, is left out."""
-    scale = made.parameters.number("scale", 1.0, 0.0)
+    scale = entity.parameters.number("scale", 1.0, 0.0)
     if scale:
         return scale
     ledger.notes.add("a scale of 0 of the film is left out")
     return 1.0
 
 
-def _white(made: Made, ledger: Ledger) -> float | None:
-    white = made.parameters.number("whitebalance", 0.0, 0.0, 25000.0)
-    sensor = made.parameters.text("sensor", "cie1931")
+def _white(entity: Entity, ledger: Ledger) -> float | None:
+    white = entity.parameters.number("whitebalance", 0.0, 0.0, 25000.0)
+    sensor = entity.parameters.text("sensor", "cie1931")
     if sensor != "cie1931":
         ledger.notes.add(f"the sensor {sensor[:40]!r} of the film is left out: colors are CIE 1931")
     if 0 < white < 1000:

@@ -12,7 +12,7 @@ from daguerre.scene.spectrum import Spectrum
 
 from .parameters import SPECTRA, Parameter
 from .spectra import Color, Samples, Spectra
-from .state import Made
+from .state import Entity
 
 #: Glasses of pbrt by their names in makers' catalogues.
 _GLASSES = {"BK7": "N-BK7", "BAF10": "N-BAF10", "FK51A": "N-FK51A", "LASF9": "LASF9"} | {
@@ -34,23 +34,23 @@ class Indices:
     def __init__(self, spectra: Spectra, notes: Notes) -> None:
         self._spectra, self._notes = spectra, notes
 
-    def glass(self, made: Made, names: tuple[str, ...], default: float) -> float | Spectrum:
+    def glass(self, entity: Entity, names: tuple[str, ...], default: float) -> float | Spectrum:
         """Index of a glass: a number, or a spectrum.
 
         Args:
-            made: Directive.
+            entity: Directive.
             names: Names of the parameter; the first that is given counts.
             default: Index without it.
         """
-        name = next((name for name in names if made.parameters.has(name)), names[0])
-        found = made.parameters.find(name, "float", "integer", "texture", *SPECTRA)
+        name = next((name for name in names if entity.parameters.has(name)), names[0])
+        found = entity.parameters.find(name, "float", "integer", "texture", *SPECTRA)
         if found is None:
             return default
         if found.type == "texture":
             self._notes.add(f"a texture of {name!r} is read as {default:g}")
             return default
         if found.type in ("float", "integer"):
-            return made.parameters.number(name, default, 0.1, 10.0) or default
+            return entity.parameters.number(name, default, 0.1, 10.0) or default
         if isinstance(found.values, np.ndarray):
             if found.type == "rgb":
                 self._notes.add(f"{name!r} of a glass is read from its green channel")
@@ -62,28 +62,28 @@ class Indices:
             return Spectrum(tuple(_NM.tolist()), tuple(data.index(_NM).tolist()))
         return _spectrum(found, self._spectra.samples(found), default)
 
-    def metal(self, made: Made, eta: str, k: str) -> tuple[Color | Spectrum, Color | Spectrum]:
+    def metal(self, entity: Entity, eta: str, k: str) -> tuple[Color | Spectrum, Color | Spectrum]:
         """Index of a metal, eta + i k; default: copper.
 
         Args:
-            made: Directive.
+            entity: Directive.
             eta: Name of the parameter of the real part.
             k: Name of the parameter of the imaginary part.
         """
         copper = metals.load(_METAL)
-        return self._part(made, eta, copper[0], 0), self._part(made, k, copper[1], 1)
+        return self._part(entity, eta, copper[0], 0), self._part(entity, k, copper[1], 1)
 
     def _part(
-        self, made: Made, name: str, default: Color | Spectrum, part: int
+        self, entity: Entity, name: str, default: Color | Spectrum, part: int
     ) -> Color | Spectrum:
-        found = made.parameters.find(name, "float", "texture", *SPECTRA)
+        found = entity.parameters.find(name, "float", "texture", *SPECTRA)
         if found is None:
             return default
         if found.type == "texture":
             self._notes.add(f"a texture of {name!r} of a metal is replaced by copper")
             return default
         if found.type == "float":
-            value = made.parameters.number(name, 1.0, 0.0)
+            value = entity.parameters.number(name, 1.0, 0.0)
             return (value, value, value)
         if found.type in ("rgb", "xyz"):
             return self._spectra.coefficient(found)

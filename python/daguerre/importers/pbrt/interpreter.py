@@ -23,7 +23,7 @@ from .ledger import Ledger
 from .lexer import Lexer
 from .parameters import Parameter
 from .place import FilePlace
-from .state import TARGETS, Made, State
+from .state import TARGETS, Entity, State
 from .transforms import Matrix, Moving, look_at, rotation, scaling, translation
 
 #: Most blocks within blocks.
@@ -61,12 +61,12 @@ class Interpreter:
 
     def __init__(self, files: Files, ledger: Ledger) -> None:
         self._files, self._ledger = files, ledger
-        self.made = Description()
+        self.description = Description()
         self._state = State()
         self._systems: dict[str, Moving] = {}
         self._blocks: list[tuple[str, FilePlace, State]] = []
         self._in_world = False
-        self._object: list[Made] | None = None
+        self._object: list[Entity] | None = None
         self._handlers: dict[str, Callable[[Directive], None]] = {
             name: getattr(self, f"_on_{name}") for name in _handled(type(self))
         }
@@ -82,7 +82,7 @@ class Interpreter:
         self._check_blocks()
         if not self._in_world:
             lexer.place().fail("the file ends without WorldBegin")
-        return self.made
+        return self.description
 
     def _check_blocks(self) -> None:
         if self._blocks:
@@ -94,7 +94,7 @@ class Interpreter:
             self._ledger.see(directive.place)
             name = directive.name
             if name in OF_V3:
-                self.made.version = 3
+                self.description.version = 3
             if name in _OPTIONS and self._in_world:
                 directive.place.fail("allowed only before WorldBegin")
             if name in _WORLD and not self._in_world:
@@ -104,14 +104,14 @@ class Interpreter:
             else:
                 self._handlers[name](directive)
 
-    def _made(self, directive: Directive, target: str = "", name: str = "") -> Made:
-        """Makes a record of a directive with the state of now."""
+    def _entity(self, directive: Directive, target: str = "", name: str = "") -> Entity:
+        """Makes the entity of a directive, with the current state."""
         state = self._state
         inherited = state.attributes.get(target, ())
         parameters = directive.parameters.inheriting(inherited, state.color_space)
         kind = directive.strings[-1]
-        textures, materials = self.made.textures.now, self.made.materials.now
-        return Made(kind, parameters, directive.place, state, textures, materials, name)
+        textures, materials = self.description.textures.current, self.description.materials.current
+        return Entity(kind, parameters, directive.place, state, textures, materials, name)
 
     def _set(self, place: FilePlace, **changes: object) -> None:
         self._state = replace(self._state, **changes)  # type: ignore[arg-type]
@@ -175,16 +175,16 @@ class Interpreter:
     # Transforms ---------------------------------------------------------------------------------
 
     def _multiply(self, directive: Directive, matrix: Matrix) -> None:
-        made = self._now().times_matrix(matrix, *self._state.active)
-        for transform in (made.start, made.end):
+        product = self._transform().times_matrix(matrix, *self._state.active)
+        for transform in (product.start, product.end):
             if not (abs(transform) <= MAX_ENTRY).all():
                 directive.place.fail(f"numbers of the matrix must be at most {MAX_ENTRY:g}")
-        self._set(directive.place, transform=made)
+        self._set(directive.place, transform=product)
 
     def _replace(self, directive: Directive, matrix: Matrix) -> None:
-        self._set(directive.place, transform=self._now().set_to(matrix, *self._state.active))
+        self._set(directive.place, transform=self._transform().set_to(matrix, *self._state.active))
 
-    def _now(self) -> Moving:
+    def _transform(self) -> Moving:
         return self._state.transform
 
     def _on_Identity(self, directive: Directive) -> None:
@@ -218,10 +218,10 @@ class Interpreter:
 
     def _on_TransformTimes(self, directive: Directive) -> None:
         start, end = directive.numbers.tolist()
-        self._set(directive.place, transform=replace(self._now(), times=(start, end)))
+        self._set(directive.place, transform=replace(self._transform(), times=(start, end)))
 
     def _on_CoordinateSystem(self, directive: Directive) -> None:
-        self._systems[directive.strings[0]] = self._now()
+        self._systems[directive.strings[0]] = self._transform()
         self._ledger.use(directive.place)
 
     def _on_CoordSysTransform(self, directive: Directive) -> None:
@@ -249,64 +249,64 @@ class Interpreter:
         self._set(directive.place, inside=inside, outside=outside)
 
     def _on_Material(self, directive: Directive) -> None:
-        self._state = replace(self._state, material=self._made(directive, "material"))
+        self._state = replace(self._state, material=self._entity(directive, "material"))
 
     def _on_NamedMaterial(self, directive: Directive) -> None:
         self._set(directive.place, material=directive.strings[0])
 
     def _on_AreaLightSource(self, directive: Directive) -> None:
-        self._state = replace(self._state, emission=self._made(directive, "light"))
+        self._state = replace(self._state, emission=self._entity(directive, "light"))
 
-    # Things -------------------------------------------------------------------------------------
+    # Entities -----------------------------------------------------------------------------------
 
     def _on_Camera(self, directive: Directive) -> None:
-        self._systems["camera"] = self._now().inverse(directive.place)
-        self._again(self.made.camera)
-        self.made.camera = self._made(directive)
+        self._systems["camera"] = self._transform().inverse(directive.place)
+        self._note_replaced(self.description.camera)
+        self.description.camera = self._entity(directive)
 
     def _on_Film(self, directive: Directive) -> None:
-        self._again(self.made.film)
-        self.made.film = self._made(directive)
+        self._note_replaced(self.description.film)
+        self.description.film = self._entity(directive)
 
     def _on_PixelFilter(self, directive: Directive) -> None:
-        self._again(self.made.pixel_filter)
-        self.made.pixel_filter = self._made(directive)
+        self._note_replaced(self.description.pixel_filter)
+        self.description.pixel_filter = self._entity(directive)
 
-    def _again(self, before: Made | None) -> None:
+    def _note_replaced(self, before: Entity | None) -> None:
         if before is not None:
             name = before.place.directive
             self._ledger.note(before.place, f"a {name} before the last one is left out")
 
     def _on_MakeNamedMedium(self, directive: Directive) -> None:
         name = directive.strings[0]
-        self.made.media.define(name, self._made(directive, "medium", name))
+        self.description.media.define(name, self._entity(directive, "medium", name))
 
     def _on_MakeNamedMaterial(self, directive: Directive) -> None:
         name = directive.strings[0]
-        self.made.materials.define(name, self._made(directive, "material", name))
+        self.description.materials.define(name, self._entity(directive, "material", name))
 
     def _on_Texture(self, directive: Directive) -> None:
         name, kind, _ = directive.strings
         kind = {"color": "spectrum"}.get(kind, kind)
         if kind not in ("float", "spectrum"):
             directive.place.fail(f"type: wanted float or spectrum, got {kind[:40]!r}")
-        self.made.textures.define((kind, name), self._made(directive, "texture", name))
+        self.description.textures.define((kind, name), self._entity(directive, "texture", name))
 
     def _on_LightSource(self, directive: Directive) -> None:
-        self.made.lights.append(self._made(directive, "light"))
+        self.description.lights.append(self._entity(directive, "light"))
 
     def _on_Shape(self, directive: Directive) -> None:
-        shapes = self.made.shapes if self._object is None else self._object
-        shapes.append(self._made(directive, "shape"))
+        shapes = self.description.shapes if self._object is None else self._object
+        shapes.append(self._entity(directive, "shape"))
 
     def _on_ObjectBegin(self, directive: Directive) -> None:
         name = directive.strings[0]
         if self._object is not None:
             directive.place.fail("objects cannot be nested")
-        if name in self.made.objects:
+        if name in self.description.objects:
             directive.place.fail(f"the name {name[:60]!r} appears twice")
         self._push(directive)
-        self._object = self.made.objects[name] = []
+        self._object = self.description.objects[name] = []
 
     def _on_ObjectEnd(self, directive: Directive) -> None:
         self._state = self._pop(directive, "ObjectBegin")
@@ -316,7 +316,7 @@ class Interpreter:
         if self._object is not None:
             directive.place.fail("an object cannot contain instances")
         name = directive.strings[0]
-        self.made.instances.append(self._made(directive, "", name))
+        self.description.instances.append(self._entity(directive, "", name))
 
     # Files --------------------------------------------------------------------------------------
 

@@ -22,7 +22,7 @@ from .emission import scaled_by
 from .ledger import Ledger
 from .octahedral import square_of
 from .spectra import Color, Spectra, scaled
-from .state import Made
+from .state import Entity
 from .transforms import unit_of
 
 Array = NDArray[np.float64]
@@ -60,41 +60,41 @@ class Lights:
         self._axes, self._unit = axes, unit_of(axes)
         self._left = _MOST_PICTURES
 
-    def count(self, made: Made) -> None:
+    def count(self, entity: Entity) -> None:
         """Counts a light with a picture, and stops at too many."""
         self._left -= 1
         if self._left < 0:
-            made.place.fail(f"too many lights with pictures: the limit is {_MOST_PICTURES}")
+            entity.place.fail(f"too many lights with pictures: the limit is {_MOST_PICTURES}")
 
-    def read(self, made: Made) -> list[Placed]:
+    def read(self, entity: Entity) -> list[Placed]:
         """Reads a light; none, and a note: its kind is not supported.
 
         Raises:
             InputError: A parameter is wrong.
         """
-        reader = _KINDS.get(made.kind)
+        reader = _KINDS.get(entity.kind)
         if reader is None:
-            sentence = f"a LightSource of kind {made.kind[:40]!r} is left out"
-            self.ledger.note(made.place, sentence)
+            sentence = f"a LightSource of kind {entity.kind[:40]!r} is left out"
+            self.ledger.note(entity.place, sentence)
             return []
-        if made.state.transform.moves:
+        if entity.state.transform.moves:
             self.ledger.notes.add("a moving light stays at its first place, as in pbrt")
-        found = reader(self, made)
-        self.ledger.use(made.place)
-        self.ledger.tell_unread(made.parameters, made.place, made.kind)
+        found = reader(self, entity)
+        self.ledger.use(entity.place)
+        self.ledger.tell_unread(entity.parameters, entity.place, entity.kind)
         return found
 
-    def color(self, made: Made, name: str) -> Color:
+    def color(self, entity: Entity, name: str) -> Color:
         """Color and scale of a light."""
-        return scaled_by(made, self.spectra.light(made.parameters.find(name)), self.spectra)
+        return scaled_by(entity, self.spectra.light(entity.parameters.find(name)), self.spectra)
 
-    def intensity(self, made: Made) -> Color:
+    def intensity(self, entity: Entity) -> Color:
         """Color of a light without size; ``power`` and all else are factors on it."""
-        return scaled(self.color(made, "I"), self._unit**2)  # so that surfaces get the same light
+        return scaled(self.color(entity, "I"), self._unit**2)  # so that surfaces get the same light
 
-    def world(self, made: Made) -> Array:
+    def world(self, entity: Entity) -> Array:
         """Scene from the light's space."""
-        return np.asarray(self._axes @ made.state.transform.start)
+        return np.asarray(self._axes @ entity.state.transform.start)
 
     def frame(self, world: Array) -> tuple[Array, Array]:
         """Rigid frame of a light, and the light's space from that frame, shape (3, 3)."""
@@ -109,16 +109,16 @@ class Lights:
         return rigid, flip @ ahead
 
 
-def _point(lights: Lights, made: Made) -> list[Placed]:
-    color = lights.intensity(made)
-    power = made.parameters.number("power", -1.0)
+def _point(lights: Lights, entity: Entity) -> list[Placed]:
+    color = lights.intensity(entity)
+    power = entity.parameters.number("power", -1.0)
     color = scaled(color, power / (4 * math.pi)) if power > 0 else color
-    return [Placed(PointLight(color), _moved(lights.world(made), _from(made)))]
+    return [Placed(PointLight(color), _moved(lights.world(entity), _from(entity)))]
 
 
-def _spot(lights: Lights, made: Made) -> list[Placed]:
-    color = lights.intensity(made)
-    number = made.parameters.number
+def _spot(lights: Lights, entity: Entity) -> list[Placed]:
+    color = lights.intensity(entity)
+    number = entity.parameters.number
     end = number("coneangle", 30.0, 0.0, 180.0)
     start = end - number("conedeltaangle", 5.0, 0.0)
     start = min(max(start, 0.0), end)
@@ -130,10 +130,10 @@ def _spot(lights: Lights, made: Made) -> list[Placed]:
     if end <= 0:
         lights.ledger.notes.add("a spot light of angle 0 is left out")
         return []
-    world, origin = lights.world(made), _from(made)
-    ahead = made.parameters.point("to", (0, 0, 1)) - origin
+    world, origin = lights.world(entity), _from(entity)
+    ahead = entity.parameters.point("to", (0, 0, 1)) - origin
     light = PointLight(color, profile=_cone(start, end, lights.version))
-    return [Placed(light, _aimed(made, world, origin, ahead))]
+    return [Placed(light, _aimed(entity, world, origin, ahead))]
 
 
 def _cone(start: float, end: float, version: int) -> LightProfile:
@@ -154,25 +154,25 @@ def _cone(start: float, end: float, version: int) -> LightProfile:
     return LightProfile.table([*begins, *angles], [1.0 for _ in begins] + share.tolist())
 
 
-def _distant(lights: Lights, made: Made) -> list[Placed]:
-    color = lights.color(made, "L")
-    illuminance = made.parameters.number("illuminance", -1.0)
+def _distant(lights: Lights, entity: Entity) -> list[Placed]:
+    color = lights.color(entity, "L")
+    illuminance = entity.parameters.number("illuminance", -1.0)
     color = scaled(color, illuminance) if illuminance > 0 else color
-    origin = _from(made)
-    ahead = made.parameters.point("to", (0, 0, 1)) - origin
-    aimed = _aimed(made, lights.world(made), origin, ahead)
+    origin = _from(entity)
+    ahead = entity.parameters.point("to", (0, 0, 1)) - origin
+    aimed = _aimed(entity, lights.world(entity), origin, ahead)
     return [Placed(DirectionalLight(color), aimed)]
 
 
-def _goniometric(lights: Lights, made: Made) -> list[Placed]:
-    color = lights.intensity(made)
-    name = made.parameters.text("filename") or made.parameters.text("mapname")
-    values = _grey(lights, made, name)
-    power = made.parameters.number("power", -1.0)
+def _goniometric(lights: Lights, entity: Entity) -> list[Placed]:
+    color = lights.intensity(entity)
+    name = entity.parameters.text("filename") or entity.parameters.text("mapname")
+    values = _grey(lights, entity, name)
+    power = entity.parameters.number("power", -1.0)
     mean = float(values.mean())
     if power > 0:
         color = scaled(color, power / (4 * math.pi * mean)) if mean > 0 else _ZERO
-    rigid, flip = lights.frame(lights.world(made))
+    rigid, flip = lights.frame(lights.world(entity))
     theta, phi, ways = _directions(180.0, 180.0 / max(values.shape), flip)
     # The map's axis is +y of the light, and its y is the light's z.
     x, y, z = ways[..., 0], ways[..., 2], ways[..., 1]
@@ -186,18 +186,18 @@ def _goniometric(lights: Lights, made: Made) -> list[Placed]:
     return [Placed(PointLight(color, profile=LightProfile.table(theta, found, phi)), rigid)]
 
 
-def _projection(lights: Lights, made: Made) -> list[Placed]:
-    color = lights.intensity(made)
-    name = made.parameters.text("filename") or made.parameters.text("mapname")
-    pixels = _picture(lights, made, name)
+def _projection(lights: Lights, entity: Entity) -> list[Placed]:
+    color = lights.intensity(entity)
+    name = entity.parameters.text("filename") or entity.parameters.text("mapname")
+    pixels = _picture(lights, entity, name)
     height, width = pixels.shape[:2]
     usual = 45.0 if lights.version == 3 else 90.0
-    half = math.tan(math.radians(made.parameters.number("fov", usual, 0.1, 179.0)) / 2)
+    half = math.tan(math.radians(entity.parameters.number("fov", usual, 0.1, 179.0)) / 2)
     across, down = half * max(width / height, 1), half * max(height / width, 1)
-    power = made.parameters.number("power", -1.0)
+    power = entity.parameters.number("power", -1.0)
     if power > 0:
         color = scaled(color, _power_factor(power, pixels, across, down))
-    rigid, flip = lights.frame(lights.world(made))
+    rigid, flip = lights.frame(lights.world(entity))
     corner = math.degrees(math.atan(math.hypot(across, down)))
     pixel = corner / max(width, height)
     theta, phi, ways = _directions(min(corner + _STEP, 89.5), pixel, flip)
@@ -246,14 +246,14 @@ def _directions(end: float, pixel: float, flip: Array) -> tuple[Array, Array, Ar
     return theta, phi, ways @ flip.T
 
 
-def _grey(lights: Lights, made: Made, name: str) -> Array:
-    return np.asarray(_picture(lights, made, name).mean(axis=2))
+def _grey(lights: Lights, entity: Entity, name: str) -> Array:
+    return np.asarray(_picture(lights, entity, name).mean(axis=2))
 
 
-def _picture(lights: Lights, made: Made, name: str) -> Array:
+def _picture(lights: Lights, entity: Entity, name: str) -> Array:
     """Values of a light's picture, shape (H, W, 3); white without a picture."""
-    lights.count(made)
-    picture = lights.images.picture(str(made.place), name) if name else None
+    lights.count(entity)
+    picture = lights.images.picture(str(entity.place), name) if name else None
     if picture is None:
         lights.ledger.notes.add("a light without its picture emits equally in all directions")
         return np.ones((1, 1, 3))
@@ -262,22 +262,22 @@ def _picture(lights: Lights, made: Made, name: str) -> Array:
     return np.maximum(values, 0).astype(np.float64)
 
 
-def _from(made: Made) -> Array:
-    return made.parameters.point("from", (0, 0, 0))
+def _from(entity: Entity) -> Array:
+    return entity.parameters.point("from", (0, 0, 0))
 
 
 def _moved(world: Array, origin: Array) -> Array:
-    made = np.eye(4)
-    made[:3, 3] = world[:3, :3] @ origin + world[:3, 3]
-    return made
+    moved = np.eye(4)
+    moved[:3, 3] = world[:3, :3] @ origin + world[:3, 3]
+    return moved
 
 
-def _aimed(made: Made, world: Array, origin: Array, ahead: Array) -> Array:
+def _aimed(entity: Entity, world: Array, origin: Array, ahead: Array) -> Array:
     """Rigid frame at ``origin`` with -z along ``ahead``, both in the light's space."""
     way = world[:3, :3] @ ahead
     length = float(np.linalg.norm(way))
     if not length > 0:
-        made.place.fail("from, to: the two points must differ")
+        entity.place.fail("from, to: the two points must differ")
     z = -way / length
     other = np.eye(3)[int(np.argmin(np.abs(z)))]
     x = np.cross(other, z)
@@ -287,7 +287,7 @@ def _aimed(made: Made, world: Array, origin: Array, ahead: Array) -> Array:
     return rigid
 
 
-_KINDS: dict[str, Callable[[Lights, Made], list[Placed]]] = {
+_KINDS: dict[str, Callable[[Lights, Entity], list[Placed]]] = {
     "point": _point,
     "spot": _spot,
     "distant": _distant,

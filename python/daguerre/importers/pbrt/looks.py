@@ -14,7 +14,7 @@ from .ledger import Ledger
 from .materials import OF_V4, Appearance, Reader, Tools
 from .media import Media
 from .old_materials import OF_V3
-from .state import Made
+from .state import Entity
 from .textures import Shade, Textures
 
 #: Largest depth of mixtures within mixtures.
@@ -36,8 +36,8 @@ class Looks:
     def __init__(self, scene: Scene, tools: Tools, media: Media, ledger: Ledger) -> None:
         self._scene, self._media, self._ledger = scene, media, ledger
         self._tools = replace(tools, part=self._part)
-        self._looks: dict[Made, Appearance] = {}
-        self._open: list[Made] = []
+        self._looks: dict[Entity, Appearance] = {}
+        self._open: list[Entity] = []
         self._indices: dict[tuple[object, ...], int] = {}
         readers: dict[str, Reader] = (
             {**OF_V4, **OF_V3} if tools.version == 3 else {**OF_V3, **OF_V4}
@@ -49,7 +49,7 @@ class Looks:
         """Textures of the scene."""
         return self._tools.textures
 
-    def of(self, shape: Made) -> Appearance:
+    def of(self, shape: Entity) -> Appearance:
         """Look of a shape's material.
 
         Raises:
@@ -62,13 +62,13 @@ class Looks:
             material = named(shape.materials, material, shape.place, "material")
         return self._look(material)
 
-    def mask(self, shape: Made) -> Shade:
+    def mask(self, shape: Entity) -> Shade:
         """Covered share of a shape."""
         shape.parameters.find("shadowalpha")
         return self.textures.number(shape, "alpha", 1.0)
 
     def index(
-        self, shape: Made, look: Appearance, mask: Shade, emission: Emission, slope: float = 1.0
+        self, shape: Entity, look: Appearance, mask: Shade, emission: Emission, slope: float = 1.0
     ) -> int:
         """Index of the material of a shape.
 
@@ -129,50 +129,50 @@ class Looks:
         index = self.textures.picture(place, emission.picture)
         return None if index is None else TextureSlot(index)
 
-    def _look(self, made: Made) -> Appearance:
-        if made not in self._looks:
-            if made in self._open:
-                made.place.fail("mixes form a cycle: the material contains itself")
+    def _look(self, entity: Entity) -> Appearance:
+        if entity not in self._looks:
+            if entity in self._open:
+                entity.place.fail("mixes form a cycle: the material contains itself")
             if len(self._open) >= _DEEPEST:
-                made.place.fail(f"too many nested mixtures: the limit is {_DEEPEST}")
-            self._open.append(made)
-            self._looks[made] = self._read(made)
+                entity.place.fail(f"too many nested mixtures: the limit is {_DEEPEST}")
+            self._open.append(entity)
+            self._looks[entity] = self._read(entity)
             self._open.pop()
-        return self._looks[made]
+        return self._looks[entity]
 
-    def _read(self, made: Made) -> Appearance:
-        is_named = made.place.directive == "MakeNamedMaterial"
-        kind = made.parameters.text("type") if is_named else made.kind
+    def _read(self, entity: Entity) -> Appearance:
+        is_named = entity.place.directive == "MakeNamedMaterial"
+        kind = entity.parameters.text("type") if is_named else entity.kind
         if is_named and not kind:
-            made.place.fail("type: missing, wanted a kind of material")
+            entity.place.fail("type: missing, wanted a kind of material")
         reader = self._readers.get(kind)
         if reader is None:
             known = ", ".join(name for name in OF_V4 if name)
-            made.place.fail(f"kind: wanted {known}, got {kind[:40]!r}")
+            entity.place.fail(f"kind: wanted {known}, got {kind[:40]!r}")
         textures = self.textures
         textures.space = None
-        found = reader(replace(made, kind=kind), self._tools)
+        found = reader(replace(entity, kind=kind), self._tools)
         look = found if isinstance(found, Appearance) else Appearance(found)
         look = replace(
-            look, normals=self._normals(made), bump=self._bump(made), space=textures.space
+            look, normals=self._normals(entity), bump=self._bump(entity), space=textures.space
         )
-        self._ledger.use(made.place)
-        self._ledger.tell_unread(made.parameters, made.place, kind)
+        self._ledger.use(entity.place)
+        self._ledger.tell_unread(entity.parameters, entity.place, kind)
         return look
 
-    def _normals(self, made: Made) -> TextureSlot | None:
-        name = made.parameters.text("normalmap")
-        index = self.textures.picture(str(made.place), name, srgb=False) if name else None
+    def _normals(self, entity: Entity) -> TextureSlot | None:
+        name = entity.parameters.text("normalmap")
+        index = self.textures.picture(str(entity.place), name, srgb=False) if name else None
         return None if index is None else TextureSlot(index)
 
-    def _bump(self, made: Made) -> TextureSlot | None:
-        name = "bumpmap" if made.parameters.has("bumpmap") else "displacement"
-        return self.textures.bump(made, name)
+    def _bump(self, entity: Entity) -> TextureSlot | None:
+        name = "bumpmap" if entity.parameters.has("bumpmap") else "displacement"
+        return self.textures.bump(entity, name)
 
-    def _part(self, owner: Made, name: str) -> tuple[int, Kind]:
+    def _part(self, owner: Entity, name: str) -> tuple[int, Kind]:
         """Adds a part of a mixture."""
-        made = named(owner.materials, name, owner.place, "material")
-        look = self._look(made)
+        entity = named(owner.materials, name, owner.place, "material")
+        look = self._look(entity)
         if look.opacity != 1 or look.opacity_slot is not None:
             self._ledger.notes.add("a partly transparent part of a mixture is opaque")
         key = ("part", id(look))

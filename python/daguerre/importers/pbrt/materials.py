@@ -26,7 +26,7 @@ from .indices import Indices
 from .ledger import Ledger
 from .roughness import Roughness, roughness_of
 from .spectra import Color, Spectra
-from .state import Made
+from .state import Entity
 from .subsurface import diffuse_reflectance, scattering_of
 from .texture_mapping import SpaceMapping
 from .textures import Textures
@@ -73,83 +73,83 @@ class Tools:
     spectra: Spectra
     version: int
     ledger: Ledger
-    part: Callable[[Made, str], tuple[int, Kind]]
+    part: Callable[[Entity, str], tuple[int, Kind]]
 
     def note(self, sentence: str) -> None:
         """Adds a note."""
         self.ledger.notes.add(sentence)
 
-    def roughness(self, made: Made, default: float = 0.0, prefix: str = "") -> Roughness:
+    def roughness(self, entity: Entity, default: float = 0.0, prefix: str = "") -> Roughness:
         """Reads roughness; see ``roughness_of``."""
-        return roughness_of(made, self.textures, self.version, self.ledger, default, prefix)
+        return roughness_of(entity, self.textures, self.version, self.ledger, default, prefix)
 
 
-Reader = Callable[[Made, Tools], Kind | Appearance]
+Reader = Callable[[Entity, Tools], Kind | Appearance]
 
 
-def diffuse(made: Made, tools: Tools) -> Kind:
+def diffuse(entity: Entity, tools: Tools) -> Kind:
     """Reads ``diffuse``."""
-    shade = tools.textures.color(made, "reflectance", (0.5, 0.5, 0.5))
+    shade = tools.textures.color(entity, "reflectance", (0.5, 0.5, 0.5))
     return Diffuse(shade.color, shade.slot)
 
 
-def conductor(made: Made, tools: Tools) -> Kind:
+def conductor(entity: Entity, tools: Tools) -> Kind:
     """Reads ``conductor``: by its index, or by its reflectance."""
-    return metal(made, tools, "", 0.0)
+    return metal(entity, tools, "", 0.0)
 
 
-def metal(made: Made, tools: Tools, prefix: str, roughness: float) -> Conductor:
+def metal(entity: Entity, tools: Tools, prefix: str, roughness: float) -> Conductor:
     """Reads a metal with parameters that begin with ``prefix``."""
-    rough = tools.roughness(made, roughness, prefix)
-    if tools.textures.has(made, "reflectance"):
-        shade = tools.textures.color(made, "reflectance", _WHITE)
+    rough = tools.roughness(entity, roughness, prefix)
+    if tools.textures.has(entity, "reflectance"):
+        shade = tools.textures.color(entity, "reflectance", _WHITE)
         return Conductor(
             shade.color, rough.alpha, shade.slot, rough.alpha_v, alpha_texture=rough.slot
         )
-    eta, k = tools.indices.metal(made, f"{prefix}eta", f"{prefix}k")
+    eta, k = tools.indices.metal(entity, f"{prefix}eta", f"{prefix}k")
     return Conductor(
         alpha=rough.alpha, alpha_v=rough.alpha_v, alpha_texture=rough.slot, eta=eta, k=k
     )
 
 
-def dielectric(made: Made, tools: Tools) -> Kind:
+def dielectric(entity: Entity, tools: Tools) -> Kind:
     """Reads ``dielectric``."""
-    rough = tools.roughness(made)
-    ior = tools.indices.glass(made, ("eta",), 1.5)
+    rough = tools.roughness(entity)
+    ior = tools.indices.glass(entity, ("eta",), 1.5)
     return Dielectric(ior, rough.alpha, alpha_v=rough.alpha_v, alpha_texture=rough.slot)
 
 
-def thin_dielectric(made: Made, tools: Tools) -> Kind:
+def thin_dielectric(entity: Entity, tools: Tools) -> Kind:
     """Reads ``thindielectric``."""
-    return Dielectric(tools.indices.glass(made, ("eta",), 1.5), thin=True)
+    return Dielectric(tools.indices.glass(entity, ("eta",), 1.5), thin=True)
 
 
-def coated_diffuse(made: Made, tools: Tools) -> Kind:
+def coated_diffuse(entity: Entity, tools: Tools) -> Kind:
     """Reads ``coateddiffuse``."""
-    rough = tools.roughness(made)
-    base = diffuse(made, tools)
+    rough = tools.roughness(entity)
+    base = diffuse(entity, tools)
     assert isinstance(base, Diffuse)
-    return _coated(base, rough, tools.indices.glass(made, ("eta",), 1.5), made, tools)
+    return _coated(base, rough, tools.indices.glass(entity, ("eta",), 1.5), entity, tools)
 
 
-def coated_conductor(made: Made, tools: Tools) -> Kind:
+def coated_conductor(entity: Entity, tools: Tools) -> Kind:
     """Reads ``coatedconductor``."""
-    rough = tools.roughness(made, 0.0, "interface.")
-    ior = tools.indices.glass(made, ("interface.eta",), 1.5)
-    return _coated(metal(made, tools, "conductor.", 0.0), rough, ior, made, tools)
+    rough = tools.roughness(entity, 0.0, "interface.")
+    ior = tools.indices.glass(entity, ("interface.eta",), 1.5)
+    return _coated(metal(entity, tools, "conductor.", 0.0), rough, ior, entity, tools)
 
 
 def _coated(
     base: Diffuse | Conductor,
     rough: Roughness,
     ior: float | Spectrum,
-    made: Made,
+    entity: Entity,
     tools: Tools,
 ) -> Coated:
     layers = ("thickness", "g", "albedo", "maxdepth", "nsamples", "twosided")
     for name in layers:
-        made.parameters.find(name)
-    albedo = tools.textures.color(made, "albedo", (0.0, 0.0, 0.0))
+        entity.parameters.find(name)
+    albedo = tools.textures.color(entity, "albedo", (0.0, 0.0, 0.0))
     if albedo.slot is not None or max(albedo.color) > 0:
         tools.note("a medium between coat and base is left out")
     index = float(ior.at(587.6)) if isinstance(ior, Spectrum) else ior
@@ -157,75 +157,77 @@ def _coated(
     return Coated(base, max(index, 1.0), rough.alpha, alpha_v=alpha_v, alpha_texture=slot)
 
 
-def diffuse_transmission(made: Made, tools: Tools) -> Kind:
+def diffuse_transmission(entity: Entity, tools: Tools) -> Kind:
     """Reads ``diffusetransmission``."""
     quarter = (0.25, 0.25, 0.25)
-    scale = made.parameters.number("scale", 1.0, 0.0)
-    made.parameters.find("remaproughness")
-    back = tools.textures.color(made, "reflectance", quarter)
-    through = tools.textures.color(made, "transmittance", quarter)
+    scale = entity.parameters.number("scale", 1.0, 0.0)
+    entity.parameters.find("remaproughness")
+    back = tools.textures.color(entity, "reflectance", quarter)
+    through = tools.textures.color(entity, "transmittance", quarter)
     return Diffuse(_times(back.color, scale), back.slot, _times(through.color, scale), through.slot)
 
 
-def subsurface(made: Made, tools: Tools) -> Kind:
+def subsurface(entity: Entity, tools: Tools) -> Kind:
     """Reads ``subsurface`` as a coated surface of the color that light has when it leaves."""
     tools.note("a material of kind 'subsurface' is drawn as a coated surface of its color")
-    rough = tools.roughness(made)
-    ior = tools.indices.glass(made, ("eta", "index"), 1.33)
+    rough = tools.roughness(entity)
+    ior = tools.indices.glass(entity, ("eta", "index"), 1.33)
     for name in ("mfp", "g", "scale", "Kr", "Kt"):
-        made.parameters.find(name)
-    name = "Kd" if tools.textures.has(made, "Kd") else "reflectance"
-    if tools.textures.has(made, name):
-        shade = tools.textures.color(made, name, (0.5, 0.5, 0.5))
-        return _coated(Diffuse(shade.color, shade.slot), rough, ior, made, tools)
-    absorbed, scattered = scattering_of(made, tools.spectra, tools.ledger.notes)
+        entity.parameters.find(name)
+    name = "Kd" if tools.textures.has(entity, "Kd") else "reflectance"
+    if tools.textures.has(entity, name):
+        shade = tools.textures.color(entity, name, (0.5, 0.5, 0.5))
+        return _coated(Diffuse(shade.color, shade.slot), rough, ior, entity, tools)
+    absorbed, scattered = scattering_of(entity, tools.spectra, tools.ledger.notes)
     index = float(ior.at(587.6)) if isinstance(ior, Spectrum) else ior
     color = diffuse_reflectance(absorbed, scattered, index)
-    return _coated(Diffuse(color), rough, ior, made, tools)
+    return _coated(Diffuse(color), rough, ior, entity, tools)
 
 
-def measured(made: Made, tools: Tools) -> Kind:
+def measured(entity: Entity, tools: Tools) -> Kind:
     """Reads ``measured``, which is not supported."""
-    tools.note(f"a material of kind {made.kind[:40]!r} is drawn as a grey diffuse surface")
-    for parameter in made.parameters.unread():
-        made.parameters.find(parameter.name)
+    tools.note(f"a material of kind {entity.kind[:40]!r} is drawn as a grey diffuse surface")
+    for parameter in entity.parameters.unread():
+        entity.parameters.find(parameter.name)
     return Diffuse()
 
 
-def hair(made: Made, tools: Tools) -> Kind:
+def hair(entity: Entity, tools: Tools) -> Kind:
     """Reads ``hair`` as a diffuse surface of its color."""
     tools.note("a material of kind 'hair' is drawn as a diffuse surface of its color")
     for name in ("sigma_a", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"):
-        made.parameters.find(name)
-    name = "reflectance" if tools.textures.has(made, "reflectance") else "color"
-    shade = tools.textures.color(made, name, (0.15, 0.08, 0.04))
+        entity.parameters.find(name)
+    name = "reflectance" if tools.textures.has(entity, "reflectance") else "color"
+    shade = tools.textures.color(entity, name, (0.15, 0.08, 0.04))
     return Diffuse(shade.color, shade.slot)
 
 
-def interface(made: Made, tools: Tools) -> Kind:
+def interface(entity: Entity, tools: Tools) -> Kind:
     """Reads ``interface``, which only bounds media."""
-    del made, tools
+    del entity, tools
     return Boundary()
 
 
-def mix(made: Made, tools: Tools) -> Kind | Appearance:
+def mix(entity: Entity, tools: Tools) -> Kind | Appearance:
     """Reads ``mix`` of two named materials."""
-    names = made.parameters.texts("materials")
+    names = entity.parameters.texts("materials")
     if len(names) != 2:
-        made.place.fail(f"materials: wanted two names, got {len(names)}")
-    return mixed(made, tools, names[0], names[1])
+        entity.place.fail(f"materials: wanted two names, got {len(names)}")
+    return mixed(entity, tools, names[0], names[1])
 
 
-def mixed(made: Made, tools: Tools, first: str, second: str) -> Kind | Appearance:
+def mixed(entity: Entity, tools: Tools, first: str, second: str) -> Kind | Appearance:
     """Mixture of two named materials; ``amount`` is the share of the second.
 
     An invisible part makes the other part partly transparent.
     """
-    (a, kind), (b, other) = (tools.part(made, name) for name in (first, second))
+    (a, kind), (b, other) = (tools.part(entity, name) for name in (first, second))
     if isinstance(other, Boundary):
-        shade = tools.textures.number(made, "amount", 0.5, lambda values: 1 - values, "1 - amount")
+        shade = tools.textures.number(
+            entity, "amount", 0.5, lambda values: 1 - values, "1 - amount"
+        )
         return Appearance(kind, opacity=_share(shade.number), opacity_slot=shade.slot)
-    shade = tools.textures.number(made, "amount", 0.5)
+    shade = tools.textures.number(entity, "amount", 0.5)
     if isinstance(kind, Boundary):
         return Appearance(other, opacity=_share(shade.number), opacity_slot=shade.slot)
     return Mix(a, b, _share(shade.number), shade.slot)

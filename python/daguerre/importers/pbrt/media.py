@@ -19,7 +19,7 @@ from .files import Files
 from .ledger import Ledger
 from .parameters import Parameters
 from .spectra import Color, Spectra, scaled
-from .state import Made
+from .state import Entity
 from .subsurface import MEASURED
 from .transforms import inverse, unit_of
 
@@ -36,7 +36,7 @@ class Media:
     """Reads media by name, each once.
 
     Args:
-        made: Definitions of media.
+        entity: Definitions of media.
         spectra: Spectra of the scene.
         version: Version of pbrt, 3 or 4.
         axes: Scene from world of pbrt, shape (4, 4).
@@ -46,14 +46,14 @@ class Media:
 
     def __init__(
         self,
-        made: Mapping[str, Made],
+        entity: Mapping[str, Entity],
         spectra: Spectra,
         version: int,
         axes: NDArray[np.float64],
         files: Files,
         ledger: Ledger,
     ) -> None:
-        self._made, self._spectra, self._version = made, spectra, version
+        self._entities, self._spectra, self._version = entity, spectra, version
         self._axes, self._unit, self._files = axes, unit_of(axes), files
         self._ledger = ledger
         self._media: dict[str, Medium | None] = {}
@@ -68,7 +68,7 @@ class Media:
             self._media[name] = self._read(name)
         return self._media[name]
 
-    def inside(self, name: str, shape: Made) -> Medium | None:
+    def inside(self, name: str, shape: Entity) -> Medium | None:
         """Medium of a name as the inside of a shape: a grid is then in the shape's space.
 
         Args:
@@ -94,47 +94,47 @@ class Media:
         return None if name in self._bounded else self.named(name)
 
     def _read(self, name: str) -> Medium | None:
-        made = self._made.get(name)
-        if made is None:
+        entity = self._entities.get(name)
+        if entity is None:
             self._ledger.notes.add(f"the medium {name[:40]!r} is not defined and left out")
             return None
-        kind = made.parameters.text("type")
+        kind = entity.parameters.text("type")
         if not kind:
-            made.place.fail("type: missing, wanted a kind of medium")
+            entity.place.fail("type: missing, wanted a kind of medium")
         if kind not in _KINDS:
-            self._ledger.note(made.place, f"a medium of kind {kind[:40]!r} is left out")
+            self._ledger.note(entity.place, f"a medium of kind {kind[:40]!r} is left out")
             return None
-        medium = _KINDS[kind](self, made)
+        medium = _KINDS[kind](self, entity)
         if medium is None:
             sentence = "a medium whose file is missing is left out"
-            self._ledger.note(made.place, sentence, made.parameters.text("filename"))
+            self._ledger.note(entity.place, sentence, entity.parameters.text("filename"))
             return None
-        self._ledger.use(made.place)
-        self._ledger.tell_unread(made.parameters, made.place, kind)
+        self._ledger.use(entity.place)
+        self._ledger.tell_unread(entity.parameters, entity.place, kind)
         return medium
 
-    def _homogeneous(self, made: Made) -> Medium:
-        absorbed, scattered = self._coefficients(made, (_MILK[1], _MILK[0]))
-        return self._medium(made, absorbed, scattered, None)
+    def _homogeneous(self, entity: Entity) -> Medium:
+        absorbed, scattered = self._coefficients(entity, (_MILK[1], _MILK[0]))
+        return self._medium(entity, absorbed, scattered, None)
 
-    def _coefficients(self, made: Made, usual: tuple[Color, Color]) -> tuple[Color, Color]:
-        preset = made.parameters.text("preset")
+    def _coefficients(self, entity: Entity, usual: tuple[Color, Color]) -> tuple[Color, Color]:
+        preset = entity.parameters.text("preset")
         if preset and preset not in MEASURED:
             self._ledger.notes.add(f"the liquid {preset[:40]!r} is unknown")
         absorbed, scattered = usual
         if preset in MEASURED:
             scattered, absorbed = MEASURED[preset]
-        found = [made.parameters.find(name) for name in ("sigma_a", "sigma_s")]
+        found = [entity.parameters.find(name) for name in ("sigma_a", "sigma_s")]
         if preset not in MEASURED:
             absorbed = absorbed if found[0] is None else self._spectra.coefficient(found[0])
             scattered = scattered if found[1] is None else self._spectra.coefficient(found[1])
-        factor = made.parameters.number("scale", 1.0, 0.0) / self._unit
+        factor = entity.parameters.number("scale", 1.0, 0.0) / self._unit
         return scaled(absorbed, factor), scaled(scattered, factor)
 
     def _medium(
-        self, made: Made, absorbed: Color, scattered: Color, density: DensityGrid | None
+        self, entity: Entity, absorbed: Color, scattered: Color, density: DensityGrid | None
     ) -> Medium:
-        parameters = made.parameters
+        parameters = entity.parameters
         g = parameters.number("g", 0.0, -1.0, 1.0)
         light = parameters.find("Le")
         glow: Color = (0.0, 0.0, 0.0)
@@ -147,46 +147,46 @@ class Media:
         lobes = ((float(np.clip(g, -_MOST_G, _MOST_G)), 1.0),)
         return Medium(absorbed, scattered, lobes, glow, density)
 
-    def _grid(self, made: Made) -> Medium:
-        parameters = made.parameters
+    def _grid(self, entity: Entity) -> Medium:
+        parameters = entity.parameters
         size = [parameters.integer(name, 1, 1, 1 << 20) for name in ("nx", "ny", "nz")]
         count = size[0] * size[1] * size[2]
         if count > _MOST_CELLS:
-            made.place.fail(f"nx, ny, nz: wanted at most {_MOST_CELLS} cells, got {count}")
+            entity.place.fail(f"nx, ny, nz: wanted at most {_MOST_CELLS} cells, got {count}")
         values = parameters.numbers("density", count)
         if values is None:
-            made.place.fail("density: missing")
+            entity.place.fail("density: missing")
         if (values < 0).any():
-            made.place.fail(f"density: wanted at least 0, got {values.min():g}")
+            entity.place.fail(f"density: wanted at least 0, got {values.min():g}")
         if parameters.find("temperature") is not None:
             self._ledger.notes.add("the temperature of a medium is left out")
         low, high = parameters.point("p0", (0, 0, 0)), parameters.point("p1", (1, 1, 1))
         box = np.diag([*(high - low), 1.0])
         box[:3, 3] = low
-        transform = self._axes @ made.state.transform.start @ box
+        transform = self._axes @ entity.state.transform.start @ box
         cells = values.astype(np.float32).reshape(size[2], size[1], size[0])
-        return self._dense(made, DensityGrid(cells, transform))
+        return self._dense(entity, DensityGrid(cells, transform))
 
-    def _nanovdb(self, made: Made) -> Medium | None:
+    def _nanovdb(self, entity: Entity) -> Medium | None:
         """Medium of a file's grid; None: the file is missing."""
-        parameters = made.parameters
+        parameters = entity.parameters
         name = parameters.text("filename")
         if not name:
-            made.place.fail("filename: missing, wanted a .nvdb file")
-        path = self._files.find(name, made.place, "filename")
+            entity.place.fail("filename: missing, wanted a .nvdb file")
+        path = self._files.find(name, entity.place, "filename")
         if path is None:
             return None
         if any(parameters.find(key) is not None for key in _FLAMES):
             self._ledger.notes.add("the temperature of a medium is left out")
-        with asked_by(made.place):
+        with asked_by(entity.place):
             found = of_nanovdb(path, parameters.text("gridname") or "density")
-        transform = self._axes @ made.state.transform.start @ found.transform
-        return self._dense(made, DensityGrid(found.values, transform))
+        transform = self._axes @ entity.state.transform.start @ found.transform
+        return self._dense(entity, DensityGrid(found.values, transform))
 
-    def _dense(self, made: Made, density: DensityGrid) -> Medium:
+    def _dense(self, entity: Entity, density: DensityGrid) -> Medium:
         usual = (_ONE, _ONE) if self._version == 4 else (_MILK[1], _MILK[0])
-        absorbed, scattered = self._coefficients(made, usual)
-        return self._medium(made, absorbed, scattered, density)
+        absorbed, scattered = self._coefficients(entity, usual)
+        return self._medium(entity, absorbed, scattered, density)
 
 
 def _is_number(parameters: Parameters) -> bool:
@@ -194,7 +194,7 @@ def _is_number(parameters: Parameters) -> bool:
     return found is None or len(found.values) == 1
 
 
-_KINDS: dict[str, Callable[[Media, Made], Medium | None]] = {
+_KINDS: dict[str, Callable[[Media, Entity], Medium | None]] = {
     "homogeneous": Media._homogeneous,
     "uniformgrid": Media._grid,
     "heterogeneous": Media._grid,

@@ -21,7 +21,7 @@ from .looks import Looks, has_slots
 from .materials import Appearance
 from .placing import Placing, Spots
 from .shapes import LocalMesh, surface_of
-from .state import Made
+from .state import Entity
 from .textures import Shade
 from .transforms import Moving, scaling
 
@@ -55,7 +55,7 @@ class Meshes:
         self._meshes: dict[tuple[object, ...], int] = {}
         self._left = MAX_TRIANGLES
 
-    def add(self, shapes: list[Made], outer: list[Moving] | None, name: str = "") -> None:
+    def add(self, shapes: list[Entity], outer: list[Moving] | None, name: str = "") -> None:
         """Adds shapes.
 
         Args:
@@ -67,80 +67,80 @@ class Meshes:
             InputError: A parameter or a file is wrong.
         """
         strands: dict[tuple[object, ...], Strands] = {}
-        for made in shapes:
-            if made.kind == "curve":
-                group = strands.setdefault(group_of(made), Strands(made))
-                group.add(made, self._ledger.notes)
+        for entity in shapes:
+            if entity.kind == "curve":
+                group = strands.setdefault(group_of(entity), Strands(entity))
+                group.add(entity, self._ledger.notes)
             else:
-                self._shape(made, outer, name)
+                self._shape(entity, outer, name)
         for group in strands.values():
             self._strands(group, outer, name)
 
-    def _spots(self, made: Made, outer: list[Moving] | None, name: str, own: str) -> Spots:
+    def _spots(self, entity: Entity, outer: list[Moving] | None, name: str, own: str) -> Spots:
         if outer is None:
-            return Spots(self._placing.name(own), [Moving()], made.place)
-        return Spots(name, outer, made.place)
+            return Spots(self._placing.name(own), [Moving()], entity.place)
+        return Spots(name, outer, entity.place)
 
-    def _shape(self, made: Made, outer: list[Moving] | None, name: str) -> None:
-        surface = surface_of(made, self._files, self._ledger.notes)
+    def _shape(self, entity: Entity, outer: list[Moving] | None, name: str) -> None:
+        surface = surface_of(entity, self._files, self._ledger.notes)
         if isinstance(surface, str):
-            self._ledger.note(made.place, surface, made.parameters.text("filename"))
+            self._ledger.note(entity.place, surface, entity.parameters.text("filename"))
             return
-        look, mask = self._looks.of(made), self._looks.mask(made)
-        spots = self._spots(made, outer, name, surface.name or made.kind)
-        for emission, chosen in self._lit(made, surface, outer):
+        look, mask = self._looks.of(entity), self._looks.mask(entity)
+        spots = self._spots(entity, outer, name, surface.name or entity.kind)
+        for emission, chosen in self._lit(entity, surface, outer):
             part = surface
             if chosen is not None:
                 part = replace(surface, triangles=surface.triangles[chosen], key=None)
-            world = made.state.transform.start
+            world = entity.state.transform.start
             slope = 1.0 if look.bump is None else strength(surface, world)
-            material = self._looks.index(made, look, mask, emission, slope)
-            mesh = self._mesh(part, made, look, mask, emission)
-            inner = made.state.transform
+            material = self._looks.index(entity, look, mask, emission, slope)
+            mesh = self._mesh(part, entity, look, mask, emission)
+            inner = entity.state.transform
             if part.size != 1:
                 inner = inner.times_matrix(scaling(np.full(3, part.size)), True, True)
             self._placing.add(mesh, material, inner, spots)
-        self._ledger.use(made.place)
-        self._ledger.tell_unread(made.parameters, made.place, made.kind)
+        self._ledger.use(entity.place)
+        self._ledger.tell_unread(entity.parameters, entity.place, entity.kind)
 
     def _lit(
-        self, made: Made, surface: LocalMesh, outer: list[Moving] | None
+        self, entity: Entity, surface: LocalMesh, outer: list[Moving] | None
     ) -> list[tuple[Emission, NDArray[np.bool_] | None]]:
-        light = made.state.emission
+        light = entity.state.emission
         if light is not None and outer is not None:
             sentence = "an AreaLightSource of an object is left out, as in pbrt"
             self._ledger.note(light.place, sentence)
             light = None
-        return self._emissions.of(light, surface, made.state.transform.start)
+        return self._emissions.of(light, surface, entity.state.transform.start)
 
     def _mesh(
-        self, surface: LocalMesh, made: Made, look: Appearance, mask: Shade, emission: Emission
+        self, surface: LocalMesh, entity: Entity, look: Appearance, mask: Shade, emission: Emission
     ) -> int:
         textured = has_slots(look) or has_slots(mask) or bool(emission.picture)
         if textured:
             surface = surface.with_uv()
         uv1 = None
         if look.space is not None and not surface.level:
-            world = made.state.transform.start
+            world = entity.state.transform.start
             local = surface.positions.astype(np.float64) * surface.size
             points = local @ world[:3, :3].T + world[:3, 3]
             uv1 = _down(look.space.coordinates(points))
             surface = replace(surface, key=None)
         if surface.key is None:
-            self._spend(surface, made)
+            self._spend(surface, entity)
             return self._add(surface, uv1)
         if surface.key not in self._meshes:
-            self._spend(surface, made)
+            self._spend(surface, entity)
             self._meshes[surface.key] = self._add(surface, None)
         return self._meshes[surface.key]
 
-    def _spend(self, surface: LocalMesh, made: Made) -> None:
+    def _spend(self, surface: LocalMesh, entity: Entity) -> None:
         """Counts triangles that no file holds, and stops at too many."""
-        if made.kind in ("trianglemesh", "plymesh"):
+        if entity.kind in ("trianglemesh", "plymesh"):
             return
         self._left -= len(surface.triangles) << 2 * surface.level
         if self._left < 0:
-            made.place.fail(f"too many triangles of shapes: the limit is {MAX_TRIANGLES}")
+            entity.place.fail(f"too many triangles of shapes: the limit is {MAX_TRIANGLES}")
 
     def _add(self, surface: LocalMesh, uv1: NDArray[np.float32] | None) -> int:
         positions = freeze_in_place(np.ascontiguousarray(single_if_near(surface.positions)))
@@ -163,7 +163,7 @@ class Meshes:
         )
 
     def _strands(self, strands: Strands, outer: list[Moving] | None, name: str) -> None:
-        made = strands.first
+        entity = strands.first
         mesh = self._scene.add_curves(
             np.concatenate(strands.points),
             [len(points) for points in strands.points],
@@ -171,11 +171,11 @@ class Meshes:
             basis="bezier",
             name="curves",
         )
-        look, mask = self._looks.of(made), self._looks.mask(made)
-        if made.state.emission is not None:
-            self._ledger.note(made.state.emission.place, "the light of curves is left out")
-        material = self._looks.index(made, look, mask, DARK)
-        self._placing.add(mesh, material, Moving(), self._spots(made, outer, name, "curves"))
+        look, mask = self._looks.of(entity), self._looks.mask(entity)
+        if entity.state.emission is not None:
+            self._ledger.note(entity.state.emission.place, "the light of curves is left out")
+        material = self._looks.index(entity, look, mask, DARK)
+        self._placing.add(mesh, material, Moving(), self._spots(entity, outer, name, "curves"))
         for strand in strands.all:
             if strand.state.transform.moves:
                 self._ledger.notes.add("a moving curve stays at its first place")
@@ -185,9 +185,9 @@ class Meshes:
 
 def _down(uv: NDArray[np.floating]) -> NDArray[np.float32]:
     """Texture coordinates with (0, 0) at the top left."""
-    made = np.array(uv, np.float32)
-    made[:, 1] = 1 - made[:, 1]
-    return made
+    flipped = np.array(uv, np.float32)
+    flipped[:, 1] = 1 - flipped[:, 1]
+    return flipped
 
 
 def _unit(normals: NDArray[np.floating]) -> NDArray[np.float32]:

@@ -11,7 +11,7 @@ import math
 
 from .ledger import Ledger
 from .parameters import Parameters
-from .state import Made
+from .state import Entity
 
 #: Filters that are ours, with their radius in pbrt-v4 and pbrt-v3, px.
 _RADII = {
@@ -25,19 +25,19 @@ _OURS = {"triangle": "tent"}
 _LEAST, _MOST = 0.25, 16.0
 
 
-def tell_filter(made: Made | None, version: int, ledger: Ledger) -> None:
+def tell_filter(entity: Entity | None, version: int, ledger: Ledger) -> None:
     """Notes which flag draws with the pixel filter of a scene.
 
     Raises:
         InputError: A parameter is wrong.
     """
-    if made is None:
+    if entity is None:
         return
-    flag = _flag(made.kind, made.parameters, version)
+    flag = _flag(entity.kind, entity.parameters, version)
     sentence = f"flags for the file's pixel filter: {flag}"
     if flag is None:
         sentence = "pbrt's pixel filter is left out: --filter chooses one"
-    ledger.note(made.place, sentence)
+    ledger.note(entity.place, sentence)
 
 
 def _flag(kind: str, parameters: Parameters, version: int) -> str | None:

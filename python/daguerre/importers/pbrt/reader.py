@@ -41,7 +41,7 @@ from .meshes import Meshes
 from .pixel_filter import tell_filter
 from .placing import Placing
 from .spectra import Spectra
-from .state import Made
+from .state import Entity
 from .texture_reader import TextureReader
 from .textures import Textures
 from .transforms import Matrix, Moving, scaling
@@ -114,7 +114,7 @@ class _Builder:
         spectra = Spectra(files, version, ledger.notes)
         textures = Textures(images, TextureReader(images, spectra, version, ledger), ledger)
         indices = Indices(spectra, ledger.notes)
-        self._media = Media(described.media.now, spectra, version, axes, files, ledger)
+        self._media = Media(described.media.current, spectra, version, axes, files, ledger)
         tools = Tools(textures, indices, spectra, version, ledger, _no_part)
         looks = Looks(scene, tools, self._media, ledger)
         emissions = Emissions(spectra, images, version, ledger)
@@ -149,37 +149,37 @@ class _Builder:
         """Places the objects at their instances."""
         found: dict[str, list[Moving]] = {}
         objects = self._described.objects
-        for made in self._described.instances:
-            if made.name not in objects:
-                made.place.fail(f"no object named {made.name[:60]!r} is defined")
-            found.setdefault(made.name, []).append(made.state.transform)
-            self._ledger.use(made.place)
+        for entity in self._described.instances:
+            if entity.name not in objects:
+                entity.place.fail(f"no object named {entity.name[:60]!r} is defined")
+            found.setdefault(entity.name, []).append(entity.state.transform)
+            self._ledger.use(entity.place)
         for name, outer in found.items():
             self._meshes.add(objects[name], outer, self._placing.name(name))
 
     def _light(self) -> None:
         skies = []
-        for made in self._described.lights:
-            if made.kind in ("infinite", "exinfinite"):
-                sky = self._skies.read(made)
+        for entity in self._described.lights:
+            if entity.kind in ("infinite", "exinfinite"):
+                sky = self._skies.read(entity)
                 skies += [] if sky is None else [sky]
                 continue
-            for placed in self._lights.read(made):
+            for placed in self._lights.read(entity):
                 self._scene.add_light(placed.light, placed.transform)
         set_skies(self._scene, skies)
 
     def _duration(self) -> float:
-        ends = [made.state.transform.times[1] for made in self._moving()]
+        ends = [entity.state.transform.times[1] for entity in self._moving()]
         return max((end for end in ends if end > 0), default=0.0)
 
-    def _moving(self) -> Iterable[Made]:
+    def _moving(self) -> Iterable[Entity]:
         described = self._described
         everything = [*described.shapes, *described.instances]
-        everything += [made for made in (described.camera,) if made is not None]
+        everything += [entity for entity in (described.camera,) if entity is not None]
         for shapes in described.objects.values():
             everything += shapes
-        return (made for made in everything if made.state.transform.moves)
+        return (entity for entity in everything if entity.state.transform.moves)
 
 
-def _no_part(made: Made, name: str) -> tuple[int, Kind]:
-    raise InputError(f"{made.place}: {name}: a mixture is not allowed here")
+def _no_part(entity: Entity, name: str) -> tuple[int, Kind]:
+    raise InputError(f"{entity.place}: {name}: a mixture is not allowed here")

@@ -23,7 +23,7 @@ from .files import Files
 from .film import FilmSize
 from .ledger import Ledger
 from .seen import Seen
-from .state import Made
+from .state import Entity
 
 #: Shapes of the iris in pbrt-v4 by the number of blades.
 _BLADES = {"square": 4, "pentagon": 5}
@@ -35,12 +35,12 @@ _SMALL_MM = 0.5
 
 
 def lens_of(
-    made: Made, film: FilmSize, unit: float, files: Files, version: int, ledger: Ledger
+    entity: Entity, film: FilmSize, unit: float, files: Files, version: int, ledger: Ledger
 ) -> Seen:
     """Reads a realistic camera.
 
     Args:
-        made: Directive.
+        entity: Directive.
         film: Film.
         unit: Length of a unit of the world, m; lens files and irises are in mm.
         files: Files of the scene.
@@ -50,51 +50,51 @@ def lens_of(
     Raises:
         InputError: A parameter or the lens file is wrong.
     """
-    parameters = made.parameters
+    parameters = entity.parameters
     name = parameters.text("lensfile")
     if not name:
-        made.place.fail("lensfile: missing")
-    path = files.find(name, made.place, "lensfile")
+        entity.place.fail("lensfile: missing")
+    path = files.find(name, entity.place, "lensfile")
     if path is None:
-        made.place.fail(f"lensfile: {name[:200]!r}: {MISSING}")
-    with asked_by(made.place):
+        entity.place.fail(f"lensfile: {name[:200]!r}: {MISSING}")
+    with asked_by(entity.place):
         lens = read_lens(path)
-    f_stop = _f_stop(made, lens, parameters.number("aperturediameter", 1.0, 1e-6), ledger)
+    f_stop = _f_stop(entity, lens, parameters.number("aperturediameter", 1.0, 1e-6), ledger)
     distance = parameters.number("focusdistance", 10.0, 1e-6) * unit
     try:
         focused = lens.focused(distance, f_stop=f_stop, measured_from="sensor")
     except InputError as error:
-        made.place.fail(f"focusdistance: {error}")
+        entity.place.fail(f"focusdistance: {error}")
     fields: dict[str, Any] = {
         "lens": lens,
         "f_stop": f_stop,
         "focus_distance": distance,
         "focus_from": "sensor",
         "sensor_size": film.millimetres,
-        **_iris(made, ledger),
+        **_iris(entity, ledger),
     }
-    simple = version == 3 and made.parameters.flag("simpleweighting", True)
+    simple = version == 3 and entity.parameters.flag("simpleweighting", True)
     ahead = (focused.film_z_mm - focused.entrance_pupil_z) / 1000
     if simple:
         weight = _simple_share(focused, parameters.number("aperturediameter", 1.0))
     else:
-        weight = _illuminance(made, focused, f_stop, distance - ahead)
+        weight = _illuminance(entity, focused, f_stop, distance - ahead)
     return Seen(fields, ahead, weight, timed=not simple)
 
 
-def _f_stop(made: Made, lens: Lens, diameter: float, ledger: Ledger) -> float:
+def _f_stop(entity: Entity, lens: Lens, diameter: float, ledger: Ledger) -> float:
     """F-stop of an iris of a diameter, mm."""
     order = lens.first_order()
     widest = 2 * order.stop_semi_diameter
     if diameter > widest * (1 + 1e-9):
         ledger.notes.add("an iris is limited to the size in its lens file")
     if not widest > 0:
-        made.place.fail("lensfile: the iris is closed")
+        entity.place.fail("lensfile: the iris is closed")
     return float(order.f_number * max(widest / diameter, 1.0))
 
 
-def _iris(made: Made, ledger: Ledger) -> dict[str, Any]:
-    name = made.parameters.text("aperture")
+def _iris(entity: Entity, ledger: Ledger) -> dict[str, Any]:
+    name = entity.parameters.text("aperture")
     if not name or name == "gaussian":
         if name:
             ledger.notes.add("the iris 'gaussian' is left out: it is round")
@@ -105,7 +105,7 @@ def _iris(made: Made, ledger: Ledger) -> dict[str, Any]:
     return {}
 
 
-def _illuminance(made: Made, focused: Focused, f_stop: float, distance: float) -> float:
+def _illuminance(entity: Entity, focused: Focused, f_stop: float, distance: float) -> float:
     """Illuminance of the film's middle by a radiance of 1, for glass that loses no light."""
     lens = focused.lens
     settings = _core.ExactLensSettings(
@@ -114,7 +114,7 @@ def _illuminance(made: Made, focused: Focused, f_stop: float, distance: float) -
         half_diagonal_mm=_SMALL_MM,
         film_z_mm=focused.film_z_mm,
     )
-    with asked_by(made.place), reported(lens.source):
+    with asked_by(entity.place), reported(lens.source):
         exact = _core.ExactLens(lens.prescription, settings)
     return float(exact.h0 / exact.transmittance)
 

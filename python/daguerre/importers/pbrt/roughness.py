@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from daguerre.scene.materials import TextureSlot
 
 from .ledger import Ledger
-from .state import Made
+from .state import Entity
 from .textures import Textures
 
 Array = NDArray[np.float32]
@@ -33,12 +33,17 @@ class Roughness:
 
 
 def roughness_of(
-    made: Made, textures: Textures, version: int, ledger: Ledger, default: float, prefix: str = ""
+    entity: Entity,
+    textures: Textures,
+    version: int,
+    ledger: Ledger,
+    default: float,
+    prefix: str = "",
 ) -> Roughness:
     """Reads the roughness of a surface.
 
     Args:
-        made: Directive of the material.
+        entity: Directive of the material.
         textures: Textures of the scene.
         version: Version of pbrt, 3 or 4.
         ledger: Receives a note on parameters that are left out.
@@ -48,18 +53,18 @@ def roughness_of(
     Raises:
         InputError: A parameter is wrong.
     """
-    remaps = made.parameters.flag("remaproughness", True)
+    remaps = entity.parameters.flag("remaproughness", True)
     curve = _curve(version, remaps)
     key = ("roughness", version, remaps)
 
     def read(axis: str) -> tuple[float, TextureSlot | None]:
         name = f"{prefix}{axis}roughness"
-        name = name if textures.has(made, name) else f"{prefix}roughness"
-        shade = textures.number(made, name, default, curve, key)
+        name = name if textures.has(entity, name) else f"{prefix}roughness"
+        shade = textures.number(entity, name, default, curve, key)
         return shade.number, shade.slot
 
     (u, slot), (v, other) = read("u"), read("v")
-    made.parameters.find(f"{prefix}roughness")
+    entity.parameters.find(f"{prefix}roughness")
     if other != slot:
         ledger.notes.add("a texture of roughness along one direction is used for both")
         slot = slot or other

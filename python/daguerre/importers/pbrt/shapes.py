@@ -22,7 +22,7 @@ from daguerre.scene import shapes as solids
 from daguerre.scene.polygons import triangulate
 
 from .files import Files
-from .state import Made
+from .state import Entity
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -95,66 +95,66 @@ class LocalMesh:
         )
 
 
-def surface_of(made: Made, files: Files, notes: Notes) -> LocalMesh | str:
+def surface_of(entity: Entity, files: Files, notes: Notes) -> LocalMesh | str:
     """Reads a shape, or notes why it is left out: unsupported kind, or no area.
 
     Raises:
         InputError: A parameter or a file is wrong.
     """
-    reader = _KINDS.get(made.kind)
+    reader = _KINDS.get(entity.kind)
     if reader is None:
-        return f"a shape of kind {made.kind[:40]!r} is left out"
-    found = reader(made, files, notes)
+        return f"a shape of kind {entity.kind[:40]!r} is left out"
+    found = reader(entity, files, notes)
     if found is None:
-        return f"a {made.kind} without an area is left out"
+        return f"a {entity.kind} without an area is left out"
     if isinstance(found, str):
         return found
-    return found.reversed() if made.state.reversed else found
+    return found.reversed() if entity.state.reversed else found
 
 
-def _triangles(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
+def _triangles(entity: Entity, files: Files, notes: Notes) -> LocalMesh | str | None:
     del files
-    positions = _positions(made)
-    indices = made.parameters.integers("indices", 0, _MOST_INDEX)
+    positions = _positions(entity)
+    indices = entity.parameters.integers("indices", 0, _MOST_INDEX)
     if indices is None:
         if len(positions) != 3:
-            made.place.fail("indices: missing")
+            entity.place.fail("indices: missing")
         indices = np.arange(3)
-    rows = _indices(made, indices, 3, len(positions))
-    if made.parameters.find("S") is not None or made.parameters.find("faceIndices") is not None:
+    rows = _indices(entity, indices, 3, len(positions))
+    if entity.parameters.find("S") is not None or entity.parameters.find("faceIndices") is not None:
         notes.add("'S' or 'faceIndices' of a trianglemesh is not used")
     return LocalMesh(
-        positions, rows, _values(made, "N", positions, notes), _uv(made, positions, notes)
+        positions, rows, _values(entity, "N", positions, notes), _uv(entity, positions, notes)
     ).faced()
 
 
-def _loop(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
+def _loop(entity: Entity, files: Files, notes: Notes) -> LocalMesh | str | None:
     del files
-    positions = _positions(made)
-    indices = made.parameters.integers("indices", 0, _MOST_INDEX)
+    positions = _positions(entity)
+    indices = entity.parameters.integers("indices", 0, _MOST_INDEX)
     if indices is None:
-        made.place.fail("indices: missing")
-    name = "levels" if made.parameters.has("levels") else "nlevels"
-    level = made.parameters.integer(name, 3, 0, _MOST_LEVELS)
-    made.parameters.find("scheme")
-    rows = _indices(made, indices, 3, len(positions))
+        entity.place.fail("indices: missing")
+    name = "levels" if entity.parameters.has("levels") else "nlevels"
+    level = entity.parameters.integer(name, 3, 0, _MOST_LEVELS)
+    entity.parameters.find("scheme")
+    rows = _indices(entity, indices, 3, len(positions))
     while level > 1 and len(rows) << 2 * level > _MOST_FACES:
         level -= 1
         notes.add("a loopsubdiv surface with very many faces gets fewer levels")
     return LocalMesh(positions, rows, level=level)
 
 
-def _patches(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
+def _patches(entity: Entity, files: Files, notes: Notes) -> LocalMesh | str | None:
     del files
-    positions = _positions(made)
-    indices = made.parameters.integers("indices", 0, _MOST_INDEX)
+    positions = _positions(entity)
+    indices = entity.parameters.integers("indices", 0, _MOST_INDEX)
     if indices is None:
         if len(positions) != 4:
-            made.place.fail("indices: missing")
+            entity.place.fail("indices: missing")
         indices = np.arange(4)
-    rows = _indices(made, indices, 4, len(positions))
-    normals, uv = _values(made, "N", positions, notes), _uv(made, positions, notes)
-    if made.parameters.find("emissionfilename") is not None:
+    rows = _indices(entity, indices, 4, len(positions))
+    normals, uv = _values(entity, "N", positions, notes), _uv(entity, positions, notes)
+    if entity.parameters.find("emissionfilename") is not None:
         notes.add("'emissionfilename' of a bilinearmesh is not used")
     found = solids.bilinear(
         positions[rows],
@@ -168,15 +168,15 @@ def _patches(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
     return replace(surface, patch=surface.triangles[:, 0] // each)
 
 
-def _plymesh(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
-    name = made.parameters.text("filename") or made.place.fail("filename: missing")
-    path = files.find(name, made.place, "filename")
+def _plymesh(entity: Entity, files: Files, notes: Notes) -> LocalMesh | str | None:
+    name = entity.parameters.text("filename") or entity.place.fail("filename: missing")
+    path = files.find(name, entity.place, "filename")
     for unused in ("displacement", "displacement.uvscale", "edgelength"):
-        if made.parameters.find(unused) is not None:
+        if entity.parameters.find(unused) is not None:
             notes.add(f"{unused!r} of a plymesh is not used")
     if path is None:
         return "a mesh whose file is missing is left out"
-    with asked_by(made.place):
+    with asked_by(entity.place):
         mesh = ply.read(path, notes)
     corners = mesh.corners.astype(np.int64)
     if mesh.sizes is None:
@@ -192,19 +192,19 @@ def _plymesh(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
     return made_of.faced() if len(triangles) else None
 
 
-def _sphere(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
+def _sphere(entity: Entity, files: Files, notes: Notes) -> LocalMesh | str | None:
     del files, notes
-    number = made.parameters.number
+    number = entity.parameters.number
     radius = number("radius", 1.0, 0.0)
     low, high = number("zmin", -radius), number("zmax", radius)
     low, high = (min(max(z, -radius), radius) for z in sorted((low, high)))
-    sweep = _sweep(made)
-    error = 1e-3 if made.state.emission is not None else solids.ERROR
+    sweep = _sweep(entity)
+    error = 1e-3 if entity.state.emission is not None else solids.ERROR
     area = np.radians(sweep) * radius * (high - low)
     if radius == 0:
         return None
     ends = low / radius, high / radius  # spheres of all sizes share a mesh
-    with asked_by(made.place):
+    with asked_by(entity.place):
         solid = _part_of_sphere(*ends, sweep, error)
     found = _of_solid(solid, area, ("sphere", *ends, sweep, error))
     return None if found is None else replace(found, size=radius)
@@ -216,31 +216,31 @@ def _part_of_sphere(low: float, high: float, sweep: float, error: float) -> soli
     return solids.sphere(1.0, low, high, sweep, error)
 
 
-def _disk(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
+def _disk(entity: Entity, files: Files, notes: Notes) -> LocalMesh | str | None:
     del files, notes
-    number = made.parameters.number
+    number = entity.parameters.number
     radius, height = number("radius", 1.0, 0.0), number("height", 0.0)
     inner = min(number("innerradius", 0.0, 0.0), radius)
-    sweep = _sweep(made)
+    sweep = _sweep(entity)
     area = np.radians(sweep) * 0.5 * (radius**2 - inner**2)
     key = ("disk", radius, inner, height, sweep)
-    with asked_by(made.place):
+    with asked_by(entity.place):
         return _of_solid(solids.disk(radius, inner, height, sweep), area, key)
 
 
-def _cylinder(made: Made, files: Files, notes: Notes) -> LocalMesh | str | None:
+def _cylinder(entity: Entity, files: Files, notes: Notes) -> LocalMesh | str | None:
     del files, notes
-    number = made.parameters.number
+    number = entity.parameters.number
     radius, low, high = number("radius", 1.0, 0.0), number("zmin", -1.0), number("zmax", 1.0)
-    sweep = _sweep(made)
+    sweep = _sweep(entity)
     area = abs(high - low) * radius * np.radians(sweep)
     key = ("cylinder", radius, low, high, sweep)
-    with asked_by(made.place):
+    with asked_by(entity.place):
         return _of_solid(solids.cylinder(radius, low, high, sweep), area, key)
 
 
-def _sweep(made: Made) -> float:
-    return made.parameters.number("phimax", 360.0, 0.0, 360.0)
+def _sweep(entity: Entity) -> float:
+    return entity.parameters.number("phimax", 360.0, 0.0, 360.0)
 
 
 def _of_solid(
@@ -257,16 +257,16 @@ def _down(uv: Array) -> Array:
     return uv * (1.0, -1.0) + (0.0, 1.0)
 
 
-def _positions(made: Made) -> Array:
-    found = made.parameters.points("P", "point3", "vector3")
+def _positions(entity: Entity) -> Array:
+    found = entity.parameters.points("P", "point3", "vector3")
     if found is None or not len(found):
-        made.place.fail("P: missing")
+        entity.place.fail("P: missing")
     return found
 
 
-def _indices(made: Made, indices: IntArray, each: int, count: int) -> IntArray:
-    parameter = made.parameters.find("indices")
-    fail = made.place.fail if parameter is None else parameter.fail
+def _indices(entity: Entity, indices: IntArray, each: int, count: int) -> IntArray:
+    parameter = entity.parameters.find("indices")
+    fail = entity.place.fail if parameter is None else parameter.fail
     if len(indices) % each:
         fail(f"wanted a multiple of {each} indices, got {len(indices)}")
     if not len(indices):
@@ -276,32 +276,32 @@ def _indices(made: Made, indices: IntArray, each: int, count: int) -> IntArray:
     return indices.reshape(-1, each)
 
 
-def _values(made: Made, name: str, positions: Array, notes: Notes) -> Array | None:
+def _values(entity: Entity, name: str, positions: Array, notes: Notes) -> Array | None:
     """Normals at the vertices; None: there are none that can be used."""
-    found = made.parameters.points(name, "normal", "vector3", "point3")
+    found = entity.parameters.points(name, "normal", "vector3", "point3")
     if found is not None and len(found) != len(positions):
-        notes.add(f"{name!r} of a {made.kind} without the length of 'P' is left out")
+        notes.add(f"{name!r} of a {entity.kind} without the length of 'P' is left out")
         return None
     return found
 
 
-def _uv(made: Made, positions: Array, notes: Notes) -> Array | None:
+def _uv(entity: Entity, positions: Array, notes: Notes) -> Array | None:
     """Texture coordinates at the vertices; pbrt-v3 has them as plain numbers, too."""
     for name in ("uv", "st"):
-        found = made.parameters.find(name)
+        found = entity.parameters.find(name)
         if found is None:
             continue
         if found.type in ("float", "point2", "vector2"):
             values = found.numbers
             if len(values) == 2 * len(positions):
                 return values.reshape(-1, 2)
-            notes.add(f"{name!r} of a {made.kind} without the length of 'P' is left out")
+            notes.add(f"{name!r} of a {entity.kind} without the length of 'P' is left out")
         else:
             found.fail(f"wanted type point2 or float, got {found.type}")
     return None
 
 
-_KINDS: dict[str, Callable[[Made, Files, Notes], LocalMesh | str | None]] = {
+_KINDS: dict[str, Callable[[Entity, Files, Notes], LocalMesh | str | None]] = {
     "trianglemesh": _triangles,
     "loopsubdiv": _loop,
     "bilinearmesh": _patches,

@@ -35,8 +35,8 @@ class State:
     transform: Moving = field(default_factory=Moving)
     active: tuple[bool, bool] = (True, True)
     reversed: bool = False
-    material: Made | str | None = None
-    emission: Made | None = None
+    material: Entity | str | None = None
+    emission: Entity | None = None
     inside: str = ""
     outside: str = ""
     color_space: str = "srgb"
@@ -44,8 +44,8 @@ class State:
 
 
 @dataclass(frozen=True, eq=False)
-class Made:
-    """Object that a directive makes, with the state at that moment.
+class Entity:
+    """Entity of the scene that a directive makes, with the state at that moment.
 
     Attributes:
         kind: Type of the object, such as ``trianglemesh``.
@@ -61,6 +61,6 @@ class Made:
     parameters: Parameters
     place: FilePlace
     state: State
-    textures: Mapping[tuple[str, str], Made] = field(default_factory=dict)
-    materials: Mapping[str, Made] = field(default_factory=dict)
+    textures: Mapping[tuple[str, str], Entity] = field(default_factory=dict)
+    materials: Mapping[str, Entity] = field(default_factory=dict)
     name: str = ""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from daguerre.files.notes import Notes
 
 from .spectra import Color, Spectra
-from .state import Made
+from .state import Entity
 
 Array = NDArray[np.float64]
 #: Reduced scattering and absorption of red, green and blue light, 1/mm.
@@ -74,14 +74,14 @@ MEASURED: dict[str, tuple[Color, Color]] = {
 _USUAL = "Wholemilk"
 
 
-def scattering_of(made: Made, spectra: Spectra, notes: Notes) -> tuple[Color, Color]:
+def scattering_of(entity: Entity, spectra: Spectra, notes: Notes) -> tuple[Color, Color]:
     """Absorption and scattering of a subsurface material; pbrt's default is milk."""
-    name = made.parameters.text("name") or made.parameters.text("preset")
+    name = entity.parameters.text("name") or entity.parameters.text("preset")
     if name and name not in MEASURED:
         notes.add(f"the liquid {name[:40]!r} is unknown and read as milk")
     scattered, absorbed = MEASURED.get(name, MEASURED[_USUAL])
     for parameter, which in (("sigma_a", 0), ("sigma_s", 1), ("sigma_prime_s", 1)):
-        found = made.parameters.find(parameter)
+        found = entity.parameters.find(parameter)
         if found is None or name:
             continue
         if found.type == "texture":

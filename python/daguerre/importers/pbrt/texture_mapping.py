@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .state import Made
+from .state import Entity
 from .transforms import Matrix, inverse
 
 Array = NDArray[np.float64]
@@ -79,22 +79,22 @@ class SpaceMapping:
 Mapping = UvMapping | SpaceMapping
 
 
-def mapping_of(made: Made, version: int) -> Mapping:
+def mapping_of(entity: Entity, version: int) -> Mapping:
     """Reads the mapping of a texture; planes of pbrt-v3 are in the world.
 
     Raises:
         InputError: The mapping is unknown, or a parameter is wrong.
     """
-    parameters = made.parameters
+    parameters = entity.parameters
     kind = parameters.text("mapping", "uv")
     if kind not in KINDS:
-        made.place.fail(f"mapping: wanted {', '.join(KINDS)}, got {kind[:40]!r}")
+        entity.place.fail(f"mapping: wanted {', '.join(KINDS)}, got {kind[:40]!r}")
     number = parameters.number
     offset = number("udelta", 0.0), number("vdelta", 0.0)
     if kind == "uv":
         return UvMapping((number("uscale", 1.0), number("vscale", 1.0)), offset)
     axes = np.zeros((2, 3))
-    from_world = inverse(made.state.transform.start, made.place)
+    from_world = inverse(entity.state.transform.start, entity.place)
     if kind == "planar":
         axes = np.stack([parameters.point("v1", (1, 0, 0)), parameters.point("v2", (0, 1, 0))])
         from_world = np.eye(4) if version == 3 else from_world

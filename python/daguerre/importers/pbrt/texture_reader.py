@@ -16,7 +16,7 @@ from .description import named
 from .ledger import Ledger
 from .parameters import SPECTRA, Parameter
 from .spectra import Spectra
-from .state import Made
+from .state import Entity
 from .texture_mapping import mapping_of
 from .texture_nodes import Bilinear, Blend, Checkerboard, Constant, Image, Node, Product
 
@@ -48,10 +48,10 @@ class TextureReader:
     def __init__(self, images: Images, spectra: Spectra, version: int, ledger: Ledger) -> None:
         self._images, self._spectra = images, spectra
         self._version, self._ledger = version, ledger
-        self._nodes: dict[Made, Node] = {}
+        self._nodes: dict[Entity, Node] = {}
         self._left = _MOST_NODES
 
-    def node(self, owner: Made, name: str, kind: str, default: Node, depth: int = 0) -> Node:
+    def node(self, owner: Entity, name: str, kind: str, default: Node, depth: int = 0) -> Node:
         """Reads a parameter that may be a texture, a color or a number.
 
         Args:
@@ -80,110 +80,114 @@ class TextureReader:
             return Constant((value, value, value))
         return Constant(self._spectra.coefficient(found))
 
-    def _named(self, owner: Made, found: Parameter, kind: str, depth: int) -> Node:
+    def _named(self, owner: Entity, found: Parameter, kind: str, depth: int) -> Node:
         if len(found.values) != 1:
             found.fail(f"wanted one name of a texture, got {len(found.values)}")
         name = str(found.values[0])
         other = "float" if kind == "spectrum" else "spectrum"
         key = (kind, name) if (kind, name) in owner.textures else (other, name)
-        known = {title: made for (of, title), made in owner.textures.items() if of == kind}
-        made = owner.textures.get(key) or named(known, name, found.place, f"{kind} texture")
+        known = {title: entity for (of, title), entity in owner.textures.items() if of == kind}
+        entity = owner.textures.get(key) or named(known, name, found.place, f"{kind} texture")
         if depth >= _DEEPEST:
             found.fail(f"too many nested textures: the limit is {_DEEPEST}")
-        if made not in self._nodes:
+        if entity not in self._nodes:
             self._left -= 1
-            self._nodes[made] = self._read(made, key[0], depth + 1)
-            self._ledger.use(made.place)
-            self._ledger.tell_unread(made.parameters, made.place, made.kind)
-        return self._nodes[made]
+            self._nodes[entity] = self._read(entity, key[0], depth + 1)
+            self._ledger.use(entity.place)
+            self._ledger.tell_unread(entity.parameters, entity.place, entity.kind)
+        return self._nodes[entity]
 
-    def _read(self, made: Made, kind: str, depth: int) -> Node:
-        reader = _CLASSES.get(made.kind)
+    def _read(self, entity: Entity, kind: str, depth: int) -> Node:
+        reader = _CLASSES.get(entity.kind)
         if reader is not None:
-            return reader(self, made, kind, depth)
-        if made.kind not in _NOISE:
+            return reader(self, entity, kind, depth)
+        if entity.kind not in _NOISE:
             known = ", ".join((*_CLASSES, *_NOISE))
-            made.place.fail(f"class: wanted {known}, got {made.kind[:40]!r}")
-        self._ledger.notes.add(f"a texture of class {made.kind!r} shows its mean value")
-        for parameter in made.parameters.unread():
-            made.parameters.find(parameter.name)
-        value = _NOISE[made.kind]
+            entity.place.fail(f"class: wanted {known}, got {entity.kind[:40]!r}")
+        self._ledger.notes.add(f"a texture of class {entity.kind!r} shows its mean value")
+        for parameter in entity.parameters.unread():
+            entity.parameters.find(parameter.name)
+        value = _NOISE[entity.kind]
         return Constant((value, value, value))
 
-    def _value(self, made: Made, kind: str, depth: int) -> Node:
-        return self.node(made, "value", kind, _grey(1.0), depth)
+    def _value(self, entity: Entity, kind: str, depth: int) -> Node:
+        return self.node(entity, "value", kind, _grey(1.0), depth)
 
-    def _scale(self, made: Made, kind: str, depth: int) -> Node:
-        first, second = ("tex", "scale") if made.parameters.has("tex") else ("tex1", "tex2")
-        factor = self.node(made, second, "float" if second == "scale" else kind, _grey(1.0), depth)
-        return _product(self.node(made, first, kind, _grey(1.0), depth), factor)
+    def _scale(self, entity: Entity, kind: str, depth: int) -> Node:
+        first, second = ("tex", "scale") if entity.parameters.has("tex") else ("tex1", "tex2")
+        factor = self.node(
+            entity, second, "float" if second == "scale" else kind, _grey(1.0), depth
+        )
+        return _product(self.node(entity, first, kind, _grey(1.0), depth), factor)
 
-    def _mix(self, made: Made, kind: str, depth: int) -> Node:
-        first = self.node(made, "tex1", kind, _grey(0.0), depth)
-        second = self.node(made, "tex2", kind, _grey(1.0), depth)
-        return _blend(first, second, self.node(made, "amount", "float", _grey(0.5), depth))
+    def _mix(self, entity: Entity, kind: str, depth: int) -> Node:
+        first = self.node(entity, "tex1", kind, _grey(0.0), depth)
+        second = self.node(entity, "tex2", kind, _grey(1.0), depth)
+        return _blend(first, second, self.node(entity, "amount", "float", _grey(0.5), depth))
 
-    def _direction_mix(self, made: Made, kind: str, depth: int) -> Node:
+    def _direction_mix(self, entity: Entity, kind: str, depth: int) -> Node:
         self._ledger.notes.add(
             "a texture of class 'directionmix' mixes its two textures equally everywhere"
         )
-        made.parameters.find("dir")
-        return self._mix(made, kind, depth)
+        entity.parameters.find("dir")
+        return self._mix(entity, kind, depth)
 
-    def _checkerboard(self, made: Made, kind: str, depth: int) -> Node:
-        first = self.node(made, "tex1", kind, _grey(1.0), depth)
-        second = self.node(made, "tex2", kind, _grey(0.0), depth)
-        made.parameters.find("aamode")
-        if made.parameters.integer("dimension", 2, 2, 3) == 3:
+    def _checkerboard(self, entity: Entity, kind: str, depth: int) -> Node:
+        first = self.node(entity, "tex1", kind, _grey(1.0), depth)
+        second = self.node(entity, "tex2", kind, _grey(0.0), depth)
+        entity.parameters.find("aamode")
+        if entity.parameters.integer("dimension", 2, 2, 3) == 3:
             self._ledger.notes.add("a 3D checkerboard shows its mean value")
             return _blend(first, second, _grey(0.5))
-        return Checkerboard(mapping_of(made, self._version), first, second)
+        return Checkerboard(mapping_of(entity, self._version), first, second)
 
-    def _dots(self, made: Made, kind: str, depth: int) -> Node:
+    def _dots(self, entity: Entity, kind: str, depth: int) -> Node:
         self._ledger.notes.add("a texture of class 'dots' shows its mean value")
-        mapping_of(made, self._version)
-        inside = self.node(made, "inside", kind, _grey(1.0), depth)
-        outside = self.node(made, "outside", kind, _grey(0.0), depth)
+        mapping_of(entity, self._version)
+        inside = self.node(entity, "inside", kind, _grey(1.0), depth)
+        outside = self.node(entity, "outside", kind, _grey(0.0), depth)
         return _blend(outside, inside, _grey(_DOTS))
 
-    def _bilerp(self, made: Made, kind: str, depth: int) -> Node:
+    def _bilerp(self, entity: Entity, kind: str, depth: int) -> Node:
         colors = []
         for name, default in (("v00", 0.0), ("v10", 0.0), ("v01", 1.0), ("v11", 1.0)):
-            corner = self.node(made, name, kind, _grey(default), depth)
+            corner = self.node(entity, name, kind, _grey(default), depth)
             if not isinstance(corner, Constant):
-                made.place.fail(f"{name}: wanted a color, got a texture")
+                entity.place.fail(f"{name}: wanted a color, got a texture")
             colors.append(corner.color)
-        return Bilinear(mapping_of(made, self._version), tuple(colors))
+        return Bilinear(mapping_of(entity, self._version), tuple(colors))
 
-    def _uv(self, made: Made, kind: str, depth: int) -> Node:
+    def _uv(self, entity: Entity, kind: str, depth: int) -> Node:
         del kind, depth
         corners = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0))
-        return Bilinear(mapping_of(made, self._version), corners)
+        return Bilinear(mapping_of(entity, self._version), corners)
 
-    def _image(self, made: Made, kind: str, depth: int) -> Node:
+    def _image(self, entity: Entity, kind: str, depth: int) -> Node:
         del depth
-        name = made.parameters.text("filename")
+        name = entity.parameters.text("filename")
         if not name:
-            made.place.fail("filename: missing")
-        picture = self._images.picture(str(made.place), name, is_data=kind == "float")
-        image = self._pictured(made, kind, name, picture)
+            entity.place.fail("filename: missing")
+        picture = self._images.picture(str(entity.place), name, is_data=kind == "float")
+        image = self._pictured(entity, kind, name, picture)
         return _grey(0.5) if picture is None else image
 
-    def _pictured(self, made: Made, kind: str, name: str, picture: DecodedPicture | None) -> Image:
-        parameters = made.parameters
+    def _pictured(
+        self, entity: Entity, kind: str, name: str, picture: DecodedPicture | None
+    ) -> Image:
+        parameters = entity.parameters
         wrap = parameters.text("wrap", "repeat")
         if wrap not in _WRAPS:
-            made.place.fail(f"wrap: wanted {', '.join(_WRAPS)}, got {wrap[:40]!r}")
+            entity.place.fail(f"wrap: wanted {', '.join(_WRAPS)}, got {wrap[:40]!r}")
         for unused in ("maxanisotropy", "trilinear"):
             parameters.find(unused)
         chosen = parameters.text("filter", "bilinear").lower()
         if chosen not in _FILTERS:
-            made.place.fail(f"filter: wanted {', '.join(_FILTERS)}, got {chosen[:40]!r}")
+            entity.place.fail(f"filter: wanted {', '.join(_FILTERS)}, got {chosen[:40]!r}")
         pixels = np.zeros((1, 1, 1), np.uint8) if picture is None else picture.pixels
         return Image(
             pixels,
-            self._curve(made, name, pixels.dtype == np.uint8),
-            mapping_of(made, self._version),
+            self._curve(entity, name, pixels.dtype == np.uint8),
+            mapping_of(entity, self._version),
             "clamp" if wrap == "octahedralsphere" else wrap,
             _FILTERS[chosen],
             parameters.number("scale", 1.0, 0.0),
@@ -192,9 +196,9 @@ class TextureReader:
             name,
         )
 
-    def _curve(self, made: Made, name: str, is_bytes: bool) -> str | float:
+    def _curve(self, entity: Entity, name: str, is_bytes: bool) -> str | float:
         """Curve of a picture's values. pbrt chooses it for PNG alone; light is linear."""
-        parameters, suffix = made.parameters, name.lower().rsplit(".", 1)[-1]
+        parameters, suffix = entity.parameters, name.lower().rsplit(".", 1)[-1]
         is_light = suffix in ("exr", "hdr", "pfm")
         if self._version == 3 or parameters.has("gamma"):
             encoded = parameters.flag("gamma", suffix in ("png", "tga"))
@@ -210,11 +214,11 @@ class TextureReader:
         except ValueError:
             exponent = 0.0
         if not 0.1 <= exponent <= 10:
-            made.place.fail(f"encoding: wanted srgb, linear or 'gamma 2.2', got {chosen[:40]!r}")
+            entity.place.fail(f"encoding: wanted srgb, linear or 'gamma 2.2', got {chosen[:40]!r}")
         return exponent
 
 
-_TextureFunction = Callable[[TextureReader, Made, str, int], Node]
+_TextureFunction = Callable[[TextureReader, Entity, str, int], Node]
 _CLASSES: dict[str, _TextureFunction] = {
     "constant": TextureReader._value,
     "scale": TextureReader._scale,

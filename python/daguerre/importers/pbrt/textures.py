@@ -15,7 +15,7 @@ from daguerre.shading.images import Images
 from .bump import normal_map
 from .ledger import Ledger
 from .spectra import Color
-from .state import Made
+from .state import Entity
 from .texture_bake import Baked, baked, mean
 from .texture_mapping import Mapping, SpaceMapping, UvMapping
 from .texture_nodes import Constant, Image, Node, Product
@@ -59,36 +59,41 @@ class Textures:
         #: mapping of set 1 of the material that is being read
         self.space: SpaceMapping | None = None
 
-    def color(self, made: Made, name: str, default: Color, most: float = 1.0) -> Shade:
+    def color(self, entity: Entity, name: str, default: Color, most: float = 1.0) -> Shade:
         """Reads a color of a surface; its numbers are cut at ``most``."""
-        node = self._reader.node(made, name, "spectrum", Constant(default))
+        node = self._reader.node(entity, name, "spectrum", Constant(default))
         if isinstance(node, Constant):
             red, green, blue = (min(max(value, 0.0), most) for value in node.color)
             return Shade((red, green, blue))
-        return self._slotted(made, node, None)
+        return self._slotted(entity, node, None)
 
     def number(
-        self, made: Made, name: str, default: float, curve: Curve | None = None, key: object = None
+        self,
+        entity: Entity,
+        name: str,
+        default: float,
+        curve: Curve | None = None,
+        key: object = None,
     ) -> Shade:
         """Reads a number.
 
         Args:
-            made: Directive.
+            entity: Directive.
             name: Name of the parameter.
             default: Value without the parameter.
             curve: Function of all values, before a picture is made.
             key: Content of that function.
         """
-        node = self._reader.node(made, name, "float", Constant((default, default, default)))
+        node = self._reader.node(entity, name, "float", Constant((default, default, default)))
         if isinstance(node, Constant):
             value = np.array([node.color[0]], np.float32)
             number = node.color[0] if curve is None else float(curve(value)[0])
             return Shade((number, number, number))
-        return self._slotted(made, node, curve, key)
+        return self._slotted(entity, node, curve, key)
 
-    def has(self, made: Made, name: str) -> bool:
+    def has(self, entity: Entity, name: str) -> bool:
         """Whether a parameter is given."""
-        return made.parameters.has(name)
+        return entity.parameters.has(name)
 
     def picture(self, place: str, name: str, *, srgb: bool = True) -> int | None:
         """Adds a picture as it is; None, and a note: its file is missing.
@@ -106,12 +111,12 @@ class Textures:
             found.pixels, srgb=encoded, wrap=("repeat", "repeat"), filter="linear", name=name
         )
 
-    def bump(self, made: Made, name: str) -> TextureSlot | None:
+    def bump(self, entity: Entity, name: str) -> TextureSlot | None:
         """Reads heights as a slot of a normal map in texture coordinates; None: there are none."""
-        node = self._reader.node(made, name, "float", Constant((0.0, 0.0, 0.0)))
+        node = self._reader.node(entity, name, "float", Constant((0.0, 0.0, 0.0)))
         if isinstance(node, Constant):
             return None
-        found = self._once(made, node, None, None)
+        found = self._once(entity, node, None, None)
         if not isinstance(found.mapping, UvMapping) or 0 in found.mapping.scale:
             self._ledger.notes.add("a bump without texture coordinates is left out")
             return None
@@ -123,14 +128,16 @@ class Textures:
         )
         return TextureSlot(index, 0, found.mapping.transform(found.period))
 
-    def mean(self, made: Made, name: str, default: float) -> float:
+    def mean(self, entity: Entity, name: str, default: float) -> float:
         """Reads a number; a texture is replaced by its mean."""
-        node = self._reader.node(made, name, "float", Constant((default, default, default)))
+        node = self._reader.node(entity, name, "float", Constant((default, default, default)))
         if not isinstance(node, Constant):
             self._ledger.notes.add(f"a texture of {name!r} is replaced by its mean")
         return mean(node)[0]
 
-    def _slotted(self, made: Made, node: Node, curve: Curve | None, key: object = None) -> Shade:
+    def _slotted(
+        self, entity: Entity, node: Node, curve: Curve | None, key: object = None
+    ) -> Shade:
         factor, image = _plain(node)
         if image is not None and curve is None and self._slots_in(image.mapping):
             index = self._images.texture(
@@ -141,7 +148,7 @@ class Textures:
                 name=image.name,
             )
             return Shade(factor, self._slot(index, image.mapping, 1.0))
-        found = self._once(made, node, curve, key)
+        found = self._once(entity, node, curve, key)
         if not self._slots_in(found.mapping):
             self._ledger.notes.add("a second 3D mapping in one material shows its mean value")
             red, green, blue = found.pixels.reshape(-1, 3).mean(axis=0).tolist()
@@ -155,13 +162,13 @@ class Textures:
         )
         return Shade((1.0, 1.0, 1.0), self._slot(index, found.mapping, found.period))
 
-    def _once(self, made: Made, node: Node, curve: Curve | None, key: object) -> Baked:
+    def _once(self, entity: Entity, node: Node, curve: Curve | None, key: object) -> Baked:
         found = self._baked.get((node, key))
         if found is None:
             found = self._baked[(node, key)] = baked(node, curve, self._ledger.notes)
             self._left -= found.pixels.nbytes
             if self._left < 0:
-                raise InputError(f"{made.place}: wanted at most 2 GiB of combined textures")
+                raise InputError(f"{entity.place}: wanted at most 2 GiB of combined textures")
         return found
 
     def _slots_in(self, mapping: Mapping) -> bool:
