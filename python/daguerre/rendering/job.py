@@ -85,9 +85,9 @@ class Job:
         self.done = 0
         self._staged: tuple[int, Scene] | None = None
         self._warned: set[str] = set()
-        self._seen: Scene | None = None
+        self._scene_at: Scene | None = None
         self._built: BuiltScene | None = None
-        self._chosen: dict[str, Chosen] = {}
+        self._exposures: dict[str, Chosen] = {}
 
     def run(self, *, resume: bool = False, since: float | None = None) -> bool:
         """Renders the pictures.
@@ -129,9 +129,9 @@ class Job:
         if not picture.frame:
             return self.scene
         when = self.scene.time + picture.frame / picture.view.camera(self.scene).fps
-        if self._seen is None or self._seen.time != when:
-            self._seen = self.scene.at(when)
-        return self._seen
+        if self._scene_at is None or self._scene_at.time != when:
+            self._scene_at = self.scene.at(when)
+        return self._scene_at
 
     def camera_of(self, picture: Picture) -> Camera:
         """Returns the camera of a picture, exposed as the meter of the job says."""
@@ -147,17 +147,17 @@ class Job:
         """Exposure for a camera in an automatic mode: metered once, at frame 0, and shared."""
         if not is_automatic(camera.exposure):
             return None
-        if camera.exposure not in self._chosen:
+        if camera.exposure not in self._exposures:
             from .auto_exposure import choose
 
             first = picture.view.metered(self.scene)
             chosen, self._built = choose(self.scene, first, picture.settings, self._built)
-            self._chosen[camera.exposure] = chosen
+            self._exposures[camera.exposure] = chosen
             if chosen.note:
                 self.reporter.note(chosen.note)
             if chosen.warning:
                 self.reporter.warning(chosen.warning)
-        return self._chosen[camera.exposure]
+        return self._exposures[camera.exposure]
 
     def origin_of(self, picture: Picture) -> Place:
         """Returns the origin of a picture's scene, near the first camera: a rig shares it."""
@@ -223,12 +223,18 @@ class Drawing:
 
     def __init__(self, job: Job, picture: Picture, session: Session, setup_s: float) -> None:
         self.picture, self.output, self.session = picture, picture.output, session
-        self.tell, self.control, self.setup_s = job.reporter, job.control, setup_s
+        self.reporter, self.control, self.setup_s = job.reporter, job.control, setup_s
         self.checkpoint = Checkpoint(self.output.checkpoint, job.interval_s)
         noise = picture.settings.sampling.noise
         work = job.work_of(session, picture.wanted, noise, self.output.judge)
         self.loop = Loop(
-            session, work, self.checkpoint, self.tell, self.control, self._snapshot, self._preview
+            session,
+            work,
+            self.checkpoint,
+            self.reporter,
+            self.control,
+            self._snapshot,
+            self._preview,
         )
         self._preview_took = self._previewed_at = 0.0
 
@@ -236,9 +242,9 @@ class Drawing:
         """Draws and writes the picture; False if the control stopped it."""
         work = self.loop.work
         if resume and self.checkpoint.load(self.session, work):
-            self.tell.note(f"resuming at {self._samples()} of {work.total():.6g} samples")
+            self.reporter.note(f"resuming at {self._samples()} of {work.total():.6g} samples")
         elif resume:
-            self.tell.note(f"nothing to resume: no {self.checkpoint.path}; starting anew")
+            self.reporter.note(f"nothing to resume: no {self.checkpoint.path}; starting anew")
         try:
             complete = self.loop.run()
         except MemoryError as error:
@@ -266,18 +272,18 @@ class Drawing:
 
     def _finish(self) -> None:
         try:
-            frame = self.output.frame(self.session, self.loop.work.done(), self.tell)
-            self.output.write(self.session, frame, self.output.paths, self.tell)
+            frame = self.output.frame(self.session, self.loop.work.done(), self.reporter)
+            self.output.write(self.session, frame, self.output.paths, self.reporter)
             self.output.write_noisy(self.session, self.loop.work.done(), self.output.noisy)
         except BaseException:
             # A full disk, or a channel that cannot be made, must not cost hours of work.
             self.loop.rescue()
             raise
         self.checkpoint.remove()
-        if self.tell.previews:
-            self.tell.preview(self.output.look(frame, complete=True))
+        if self.reporter.previews:
+            self.reporter.preview(self.output.look(frame, complete=True))
         loop, seconds = self.loop, time.monotonic() - self.loop.started
-        self.tell.finished(
+        self.reporter.finished(
             Finished(
                 self.session, frame, self.output.files, loop.work.done(), loop.drawn_here, seconds,
                 self.setup_s,
@@ -289,22 +295,22 @@ class Drawing:
         work = self.loop.work
         saved = self.loop.rescue() if self.control.stops < 2 else None
         kept = saved or (self.checkpoint.path if self.checkpoint.exists else None)
-        self.tell.stopped(Stopped(work.done(), work.total(), kept, saved is not None))
+        self.reporter.stopped(Stopped(work.done(), work.total(), kept, saved is not None))
 
     def _snapshot(self) -> None:
         paths: list[Path] = [p.with_suffix(f".snapshot{p.suffix}") for p in self.output.paths]
-        frame = self.output.frame(self.session, self.loop.work.done(), self.tell)
-        self.output.write(self.session, frame, paths, self.tell)
+        frame = self.output.frame(self.session, self.loop.work.done(), self.reporter)
+        self.output.write(self.session, frame, paths, self.reporter)
         names = ", ".join(map(str, paths))
-        self.tell.note(f"snapshot: {names} ({self._samples()} samples per pixel)")
+        self.reporter.note(f"snapshot: {names} ({self._samples()} samples per pixel)")
 
     def _preview(self) -> None:
         """Shows the picture so far, unless that takes more than a small share of the time."""
         began = time.monotonic()
         waited = began - self._previewed_at
-        if not self.tell.previews or waited * PREVIEW_SHARE < self._preview_took:
+        if not self.reporter.previews or waited * PREVIEW_SHARE < self._preview_took:
             return
-        self.tell.preview(self.output.look(self.output.unfinished(self.session)))
+        self.reporter.preview(self.output.look(self.output.unfinished(self.session)))
         self._previewed_at = time.monotonic()
         self._preview_took = self._previewed_at - began
 

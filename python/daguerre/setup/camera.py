@@ -64,42 +64,44 @@ def set_up(
     prescription, model = lens_and_model(camera)
     begin, end = shutter.interval(camera, scene.time, resolution)
     pose = pose_over(camera, begin, end)
-    world = pose.at(0.5)
-    origin = origin_near(world[:3, 3]) if core_scene is None else core_scene.origin
+    world_from_camera = pose.at(0.5)
+    origin = origin_near(world_from_camera[:3, 3]) if core_scene is None else core_scene.origin
     changing = changes(camera, begin, end)
-    now = camera.frozen_at(0.5 * (begin + end))  # facts of a camera are those at mid-exposure
-    size = _picture_size(now, resolution)
-    check(now, model, prescription=prescription is not None)
-    focus = Focus(scene, now, resolution, size, world, core_scene)
-    framing = Framing(now, pose.relative_to(origin), focus, _film_size(size, resolution, overscan))
+    frozen = camera.frozen_at(0.5 * (begin + end))  # facts of a camera are those at mid-exposure
+    size = _picture_size(frozen, resolution)
+    check(frozen, model, prescription=prescription is not None)
+    focus = Focus(scene, frozen, resolution, size, world_from_camera, core_scene)
+    framing = Framing(
+        frozen, pose.relative_to(origin), focus, _film_size(size, resolution, overscan)
+    )
     lens = _set_up_lens(framing, prescription, model)
     notes = [*lens.notes]
-    if any(now.tilt) and model not in WITHOUT_IRIS:
-        notes.append(tilt.note(now.tilt, lens.focal_length_mm))
+    if any(frozen.tilt) and model not in WITHOUT_IRIS:
+        notes.append(tilt.note(frozen.tilt, lens.focal_length_mm))
 
     def lens_of(moment: Camera) -> ResolvedLens:
         """Makes the lens at another moment, with a known focus distance."""
-        like = lens.model  # the model that draws, which may replace a polynomial
-        moment = moment if like == model else moment.with_(lens_model=like)
-        check(moment, like, prescription=prescription is not None)
+        drawn_model = lens.model  # the model that draws, which may replace a polynomial
+        moment = moment if drawn_model == model else moment.with_(lens_model=drawn_model)
+        check(moment, drawn_model, prescription=prescription is not None)
         known = replace(focus, camera=moment, core_scene=None)
-        return _set_up_lens(replace(framing, camera=moment, focus=known), prescription, like)
+        return _set_up_lens(replace(framing, camera=moment, focus=known), prescription, drawn_model)
 
-    if of_lens := set(changing) - {"transform"}:
+    if lens_changes := set(changing) - {"transform"}:
         from .lens_motion import LensMotion
 
-        motion = LensMotion(camera, of_lens, begin, end, lens, lens_of)
+        motion = LensMotion(camera, lens_changes, begin, end, lens, lens_of)
         notes += motion.apply(size, framing.pitch_mm)
-    set_near_clip(lens.core, now, size)
+    set_near_clip(lens.core, frozen, size)
     return ResolvedCamera(
-        camera=now,
+        camera=frozen,
         lens=lens,
         resolution=resolution,
         interval_s=(begin, end),
-        world_from_camera=as_readonly(np.asarray(world, np.float64)),
+        world_from_camera=as_readonly(np.asarray(world_from_camera, np.float64)),
         origin=origin,
         frame_size_mm=size,
-        shift_mm=now.shift,
+        shift_mm=frozen.shift,
         changes=changing,
         light_notes=tuple(notes),
     )
@@ -116,9 +118,9 @@ def with_brightness_of(setup: ResolvedCamera, camera: Camera) -> ResolvedCamera:
         UsageError: The exposure of the second camera is wrong.
     """
     begin, end = setup.interval_s
-    now = camera.frozen_at(0.5 * (begin + end))
-    check_exposure(now)
-    return replace(setup, camera=now)
+    frozen = camera.frozen_at(0.5 * (begin + end))
+    check_exposure(frozen)
+    return replace(setup, camera=frozen)
 
 
 def _picture_size(camera: Camera, resolution: tuple[int, int]) -> tuple[float, float]:

@@ -42,20 +42,20 @@ _KEPT = 16
 
 
 @dataclass(frozen=True)
-class _Chosen:
+class _UnfocusedLens:
     """A prescription at its zoom and f-stop, and the model that draws it.
 
     Attributes:
         lens: The lens, focused as in its file.
         model: One of ``MODELS``.
-        order: First-order data of that lens.
+        first_order: First-order data of that lens.
         transmittance: Share of the light on the axis that the glass transmits.
         f_stop: Focal length / entrance pupil diameter.
     """
 
     lens: lenses.Lens
     model: str
-    order: lenses.FirstOrder
+    first_order: lenses.FirstOrder
     transmittance: float
     f_stop: float
 
@@ -71,36 +71,36 @@ class _Chosen:
 
 
 @dataclass(frozen=True)
-class _InFocus:
+class _FocusedLens:
     """A focused lens, with its film and f-stop.
 
     Attributes:
         lens: The lens with the gaps of its zoom and focus.
-        order: First-order data of that lens.
+        first_order: First-order data of that lens.
         film_z: Position of the film on the lens's axis, in the lens's frame.
         distance: Focus distance from the entrance pupil along the lens's axis, m.
         f_stop: Focal length / entrance pupil diameter.
     """
 
     lens: lenses.Lens
-    order: lenses.FirstOrder
+    first_order: lenses.FirstOrder
     film_z: float
     distance: float
     f_stop: float
 
 
 @dataclass(frozen=True)
-class _Drawn:
-    """A lens that is ready to draw.
+class _CoreCamera:
+    """The core's camera with a lens, and facts of it.
 
     Attributes:
-        core: Camera of the core.
+        camera: Camera of the core.
         h0: Illuminance on the axis by a world of 1 cd/m2, lux.
         fit: Quality of its polynomials, if the model has them.
         notes: Notes for the user.
     """
 
-    core: _core.Camera
+    camera: _core.Camera
     h0: float
     fit: FitQuality | None = None
     notes: tuple[str, ...] = ()
@@ -125,33 +125,34 @@ class _Glass:
     """A lens as a camera sets it, with a cache of focused lenses for the next picture.
 
     Attributes:
-        chosen: The lens at its zoom and f-stop.
+        unfocused: The lens at its zoom and f-stop.
     """
 
     def __init__(self, camera: Camera, lens: lenses.Lens, model: str) -> None:
         self._camera, self._model = camera, model
-        self.chosen = _chosen(camera, lens, model)
+        self.unfocused = _unfocused(camera, lens, model)
         self.whole = lru_cache(_KEPT)(self._whole)
         self.notes = lru_cache(_KEPT)(self._notes)
         self.in_focus = lru_cache(_KEPT)(self._focused)
         self.exact = lru_cache(_KEPT)(self._exact)
-        self.far = lru_cache(_KEPT)(self._far)
+        self.at_infinity = lru_cache(_KEPT)(self._at_infinity)
 
     def _whole(self, distance: float) -> str | None:
-        sharp = self.in_focus(distance)
-        magnification = (sharp.order.back_focal_point - sharp.film_z) / sharp.order.efl
-        return whole_lens_note(self.chosen.lens, magnification)
+        focused_lens = self.in_focus(distance)
+        first_order = focused_lens.first_order
+        magnification = (first_order.back_focal_point - focused_lens.film_z) / first_order.efl
+        return whole_lens_note(self.unfocused.lens, magnification)
 
     def _notes(self, distance: float) -> tuple[str, ...]:
-        return tuple(_notes(self._camera, self.chosen, self.whole(distance)))
+        return tuple(_notes(self._camera, self.unfocused, self.whole(distance)))
 
-    def _focused(self, distance: float) -> _InFocus:
-        return _focused(self._camera, self.chosen, distance)
+    def _focused(self, distance: float) -> _FocusedLens:
+        return _focused(self._camera, self.unfocused, distance)
 
     def _exact(self, distance: float, film_mm: tuple[float, float], pitch_mm: float) -> _Exact:
         return _exact(self._camera, self._model, self.in_focus(distance), film_mm, pitch_mm)
 
-    def _far(self, film_mm: tuple[float, float]) -> _core.ExactLens:
+    def _at_infinity(self, film_mm: tuple[float, float]) -> _core.ExactLens:
         return _exact_lens(self._camera, film_mm, self.in_focus(math.inf))
 
 
@@ -170,55 +171,55 @@ def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
     """
     camera, focus = framing.camera, framing.focus
     glass = _glass(without_brightness(camera).with_(transform=np.eye(4)), lens, model)
-    chosen = glass.chosen
-    lens = chosen.lens
+    unfocused = glass.unfocused
+    lens = unfocused.lens
     if any(camera.tilt):
-        cardinal = _cardinal_points(chosen.order)
+        cardinal = _cardinal_points(unfocused.first_order)
         focus = replace(focus, sharp_at=lambda p: tilt.focus_on(cardinal, camera.tilt, p))
     found = focus.settled(lambda s: _directions(framing, glass, s))
-    sharp = glass.in_focus(found.distance_m)
-    film = framing_distance(sharp) * tilt.cosine(camera.tilt)
-    if chosen.traced:
+    focused_lens = glass.in_focus(found.distance_m)
+    film_distance = framing_distance(focused_lens) * tilt.cosine(camera.tilt)
+    if unfocused.traced:
         exact = glass.exact(found.distance_m, framing.film_mm, framing.pitch_mm)
-        drawn = _traced(framing, exact)
+        core_camera = _traced(framing, exact)
     else:
-        drawn = _ideal(framing, model, sharp, film)
-    offset = (sharp.film_z - sharp.order.entrance_pupil.z) * tilt.cosine(camera.tilt)
-    fit = drawn.fit
+        core_camera = _ideal(framing, model, focused_lens, film_distance)
+    from_pupil = focused_lens.film_z - focused_lens.first_order.entrance_pupil.z
+    fit = core_camera.fit
     return ResolvedLens(
-        core=drawn.core,
+        core=core_camera.camera,
         model=model if fit is None or fit.used else "exact",
         name=lens.name,
-        focal_length_mm=lens.zoom_mm or lens.nominal.efl_mm or chosen.order.efl,
-        pinhole_focal_length_mm=film,
-        f_stop=chosen.f_stop,
-        focus_distance_m=sharp.distance,
+        focal_length_mm=lens.zoom_mm or lens.nominal.efl_mm or unfocused.first_order.efl,
+        pinhole_focal_length_mm=film_distance,
+        f_stop=unfocused.f_stop,
+        focus_distance_m=focused_lens.distance,
         glass=Glass(
             lens=lens,
-            effective_focal_length_mm=sharp.order.efl,
-            entrance_pupil_offset_mm=offset,
-            squeeze=chosen.squeeze,
-            transmittance=chosen.transmittance,
-            h0=drawn.h0,
+            effective_focal_length_mm=focused_lens.first_order.efl,
+            entrance_pupil_offset_mm=from_pupil * tilt.cosine(camera.tilt),
+            squeeze=unfocused.squeeze,
+            transmittance=unfocused.transmittance,
+            h0=core_camera.h0,
             fit=fit,
             whole=glass.whole(found.distance_m),
         ),
-        notes=(*found.notes, *lens.notes, *glass.notes(found.distance_m), *drawn.notes),
+        notes=(*found.notes, *lens.notes, *glass.notes(found.distance_m), *core_camera.notes),
     )
 
 
-def _chosen(camera: Camera, lens: lenses.Lens, model: str) -> _Chosen:
+def _unfocused(camera: Camera, lens: lenses.Lens, model: str) -> _UnfocusedLens:
     lens = lens if camera.zoom is None else lens.at_zoom(camera.zoom)
-    order = lens.first_order()
-    transmittance = _transmittance(lens, order)
-    f_stop = _f_stop(camera, lens, model, order, transmittance)
-    return _Chosen(lens, model, order, transmittance, f_stop)
+    first_order = lens.first_order()
+    transmittance = _transmittance(lens, first_order)
+    f_stop = _f_stop(camera, lens, model, first_order, transmittance)
+    return _UnfocusedLens(lens, model, first_order, transmittance, f_stop)
 
 
-def _notes(camera: Camera, chosen: _Chosen, whole: str | None) -> list[str]:
+def _notes(camera: Camera, unfocused: _UnfocusedLens, whole: str | None) -> list[str]:
     """Notes on zoom, focusing, light lost in the glass, and squeeze."""
     notes = []
-    lens, squeeze = chosen.lens, chosen.squeeze
+    lens, squeeze = unfocused.lens, unfocused.squeeze
     if camera.zoom is None and (ends := lens.zoom_range_mm):
         short_end, long_end = ends
         notes.append(
@@ -227,42 +228,42 @@ def _notes(camera: Camera, chosen: _Chosen, whole: str | None) -> list[str]:
         )
     if whole is not None:
         notes.append(whole)
-    notes += _stop_notes(camera, chosen)
+    notes += _stop_notes(camera, unfocused)
     if camera.t_stop is not None:
         notes.append(
-            f"T/{camera.t_stop:.3g} of {lens.name} is f/{chosen.f_stop:.3g}: the glass "
-            f"transmits {100 * chosen.transmittance:.3g} % of the light"
+            f"T/{camera.t_stop:.3g} of {lens.name} is f/{unfocused.f_stop:.3g}: the glass "
+            f"transmits {100 * unfocused.transmittance:.3g} % of the light"
         )
     if squeeze != 1:
         notes.append(
             f"{lens.name} is anamorphic: it squeezes the picture's width by {squeeze:.3g}; "
             f"view it with a pixel aspect of {squeeze:.3g} (the EXR file says so)"
         )
-    elif not chosen.traced and lens.squeeze != 1:
+    elif not unfocused.traced and lens.squeeze != 1:
         notes.append(
-            f"{lens.name} is anamorphic: its {chosen.model} model has only the vertical focal "
+            f"{lens.name} is anamorphic: its {unfocused.model} model has only the vertical focal "
             "length and does not squeeze"
         )
     return notes
 
 
-def _stop_notes(camera: Camera, chosen: _Chosen) -> list[str]:
+def _stop_notes(camera: Camera, unfocused: _UnfocusedLens) -> list[str]:
     """Note that the lens is wide open, since the stop is slightly wider than it opens."""
     if camera.t_stop is not None:
-        widest = chosen.order.f_number / math.sqrt(chosen.transmittance)
-        text = remark(chosen.lens.name, camera.t_stop, widest, "T")
-    elif camera.f_stop is not None and chosen.model not in WITHOUT_IRIS:
-        text = remark(chosen.lens.name, camera.f_stop, chosen.order.f_number)
+        widest = unfocused.first_order.f_number / math.sqrt(unfocused.transmittance)
+        text = remark(unfocused.lens.name, camera.t_stop, widest, "T")
+    elif camera.f_stop is not None and unfocused.model not in WITHOUT_IRIS:
+        text = remark(unfocused.lens.name, camera.f_stop, unfocused.first_order.f_number)
     else:
         return []
     return [] if text is None else [text]
 
 
-def _transmittance(lens: lenses.Lens, order: lenses.FirstOrder) -> float:
+def _transmittance(lens: lenses.Lens, first_order: lenses.FirstOrder) -> float:
     """Luminous transmittance on the axis for D65, which is the same at any f-stop."""
     check_stop_size(lens)
     with reported(lens.source):
-        thick = _core.ThickLens(lens.prescription, order.f_number, _core.Iris(), math.inf)
+        thick = _core.ThickLens(lens.prescription, first_order.f_number, _core.Iris(), math.inf)
     return float(thick.transmittance)
 
 
@@ -270,45 +271,45 @@ def _f_stop(
     camera: Camera,
     lens: lenses.Lens,
     model: str,
-    order: lenses.FirstOrder,
+    first_order: lenses.FirstOrder,
     transmittance: float,
 ) -> float:
+    widest = first_order.f_number
     if camera.t_stop is None:
-        f_stop = opened(camera.f_stop or max(DEFAULT_F_STOP, order.f_number), order.f_number)
+        f_stop = opened(camera.f_stop or max(DEFAULT_F_STOP, widest), widest)
         # A pinhole has no f-stop, so a scene's f-stop that the lens lacks is no error.
         if model in WITHOUT_IRIS:
-            return max(f_stop, order.f_number)
-        if f_stop < AS_GIVEN * order.f_number:
+            return max(f_stop, widest)
+        if f_stop < AS_GIVEN * widest:
             raise LensError(
-                f"{lens.source}: f_stop: wanted {order.f_number:.3g} or more, as this lens opens "
-                f"to f/{order.f_number:.3g}; got {f_stop:.4g}",
+                f"{lens.source}: f_stop: wanted {widest:.3g} or more, as this lens opens "
+                f"to f/{widest:.3g}; got {f_stop:.4g}",
                 "lens-f-stop",
             )
         return f_stop
-    f_stop = opened(camera.t_stop * math.sqrt(transmittance), order.f_number)
-    if f_stop < AS_GIVEN * order.f_number:
-        widest = order.f_number / math.sqrt(transmittance)
+    f_stop = opened(camera.t_stop * math.sqrt(transmittance), widest)
+    if f_stop < AS_GIVEN * widest:
         raise LensError(
-            f"{lens.source}: t_stop: wanted {widest:.3g} or more, as this lens opens to "
-            f"f/{order.f_number:.3g} and transmits {100 * transmittance:.3g} % of the light; "
-            f"got {camera.t_stop:.4g}",
+            f"{lens.source}: t_stop: wanted {widest / math.sqrt(transmittance):.3g} or more, as "
+            f"this lens opens to f/{widest:.3g} and transmits {100 * transmittance:.3g} % of the "
+            f"light; got {camera.t_stop:.4g}",
             "lens-f-stop",
         )
     return f_stop
 
 
-def _focused(camera: Camera, chosen: _Chosen, distance: float) -> _InFocus:
+def _focused(camera: Camera, unfocused: _UnfocusedLens, distance: float) -> _FocusedLens:
     setting = LensSetting(
-        f_stop=chosen.f_stop,
+        f_stop=unfocused.f_stop,
         focus_m=distance,
         focus_by="best" if camera.focus_by == "best" else "paraxial",
         focus_from="sensor" if _from_sensor(camera) else "pupil",
     )
-    found = focused(chosen.lens, setting)
+    found = focused(unfocused.lens, setting)
     if setting.from_sensor:  # the film's position is known now: count from the pupil
         distance -= (found.film_z_mm - found.entrance_pupil_z) * 1e-3
     used = imperfect(found.lens, camera)
-    return _InFocus(used, found.lens.first_order(), found.film_z_mm, distance, chosen.f_stop)
+    return _FocusedLens(used, found.lens.first_order(), found.film_z_mm, distance, unfocused.f_stop)
 
 
 def _from_sensor(camera: Camera) -> bool:
@@ -318,109 +319,112 @@ def _from_sensor(camera: Camera) -> bool:
 def _exact(
     camera: Camera,
     model: str,
-    sharp: _InFocus,
+    focused_lens: _FocusedLens,
     film_mm: tuple[float, float],
     pitch_mm: float,
 ) -> _Exact:
     """Sets up a focused lens by its surfaces or by polynomials."""
     fit, notes = None, []
     if model == "polynomial":
-        exact = _exact_lens(camera, film_mm, sharp, camera.degree or DEFAULT_DEGREE)
-        fit = judged(exact, camera, sharp.lens.name, pitch_mm)
+        exact = _exact_lens(camera, film_mm, focused_lens, camera.degree or DEFAULT_DEGREE)
+        fit = judged(exact, camera, focused_lens.lens.name, pitch_mm)
         exact = exact if fit.used else exact.without_fit()
         notes.append(fit.note)
     else:
-        exact = _exact_lens(camera, film_mm, sharp)
-    notes += frame_notes(exact, sharp.lens, film_mm, camera.shift)
+        exact = _exact_lens(camera, film_mm, focused_lens)
+    notes += frame_notes(exact, focused_lens.lens, film_mm, camera.shift)
     masks = mask_of(camera, "front_mask"), mask_of(camera, "iris_mask")
     if any(mask is not None for mask in masks):
         exact = exact.with_dirt(*masks)
     return _Exact(exact, fit, tuple(notes))
 
 
-def _traced(framing: Framing, exact: _Exact) -> _Drawn:
+def _traced(framing: Framing, exact: _Exact) -> _CoreCamera:
     """Makes the camera of an exact lens."""
     core = _core.Camera.exact(framing.pose, exact.lens)
     core.sensor_stack = stack_of(framing.camera)
     core.scatter = parts_of(framing.camera)
-    return _Drawn(core, exact.lens.h0, exact.fit, exact.notes)
+    return _CoreCamera(core, exact.lens.h0, exact.fit, exact.notes)
 
 
-def _ideal(framing: Framing, model: str, sharp: _InFocus, film: float) -> _Drawn:
+def _ideal(
+    framing: Framing, model: str, focused_lens: _FocusedLens, film_distance: float
+) -> _CoreCamera:
     """Makes the camera of a model without surfaces."""
     camera = framing.camera
-    with reported(sharp.lens.source):
+    with reported(focused_lens.lens.source):
         thick = _core.ThickLens(
-            sharp.lens.prescription,
-            sharp.f_stop,
+            focused_lens.lens.prescription,
+            focused_lens.f_stop,
             iris_of(camera),
-            sharp.distance,
-            film_z_mm=sharp.film_z,
+            focused_lens.distance,
+            film_z_mm=focused_lens.film_z,
             tilt_deg=camera.tilt,
         )
     if model == "thick":
-        return _Drawn(_core.Camera.thick(framing.pose, thick), thick.h0)
-    radius = sharp.order.efl / sharp.f_stop / 2
-    return _Drawn(core_of(framing, model, film, radius, sharp.distance), thick.h0)
+        return _CoreCamera(_core.Camera.thick(framing.pose, thick), thick.h0)
+    radius = focused_lens.first_order.efl / focused_lens.f_stop / 2
+    core = core_of(framing, model, film_distance, radius, focused_lens.distance)
+    return _CoreCamera(core, thick.h0)
 
 
 def _directions(framing: Framing, glass: _Glass, distance: float) -> Directions:
     """View directions of film points at a trial focus distance."""
     camera = framing.camera
-    if camera.focus_at is None or not glass.chosen.traced or any(camera.tilt):
-        film = framing_distance(glass.in_focus(distance))
-        return ideal_direction(film * tilt.cosine(camera.tilt))
-    far = glass.far(framing.film_mm)
+    if camera.focus_at is None or not glass.unfocused.traced or any(camera.tilt):
+        film_distance = framing_distance(glass.in_focus(distance))
+        return ideal_direction(film_distance * tilt.cosine(camera.tilt))
+    at_infinity = glass.at_infinity(framing.film_mm)
 
     def direction(x: float, y: float) -> NDArray[np.float64]:
-        return np.array(far.chief_direction(x, y))
+        return np.array(at_infinity.chief_direction(x, y))
 
     return direction
 
 
-def _cardinal_points(order: lenses.FirstOrder) -> tilt.CardinalPoints:
-    front = order.front_principal_point - order.front_focal_point
+def _cardinal_points(first_order: lenses.FirstOrder) -> tilt.CardinalPoints:
+    front = first_order.front_principal_point - first_order.front_focal_point
     return tilt.CardinalPoints(
-        order.front_focal_point,
-        order.back_focal_point,
-        order.efl * front,
+        first_order.front_focal_point,
+        first_order.back_focal_point,
+        first_order.efl * front,
         front,
-        order.entrance_pupil.z,
+        first_order.entrance_pupil.z,
     )
 
 
-def framing_distance(sharp: _InFocus) -> float:
+def framing_distance(focused_lens: _FocusedLens) -> float:
     """Film distance (mm) of the pinhole, at the entrance pupil, with the framing of a real lens.
 
     A chief ray of slope t crosses the plane of focus at height t s_pupil and the film at
     t s_pupil s' / s, with s and s' measured from the principal points.
     """
-    order = sharp.order
-    if math.isinf(sharp.distance):
-        return order.efl
-    from_pupil = sharp.distance * 1e3
-    from_principal = from_pupil + order.front_principal_point - order.entrance_pupil.z
-    return (sharp.film_z - order.back_principal_point) * from_pupil / from_principal
+    first_order = focused_lens.first_order
+    if math.isinf(focused_lens.distance):
+        return first_order.efl
+    from_pupil = focused_lens.distance * 1e3
+    from_principal = from_pupil + first_order.front_principal_point - first_order.entrance_pupil.z
+    return (focused_lens.film_z - first_order.back_principal_point) * from_pupil / from_principal
 
 
 def _exact_lens(
     camera: Camera,
     film_mm: tuple[float, float],
-    sharp: _InFocus,
+    focused_lens: _FocusedLens,
     fit_degree: int | None = None,
 ) -> _core.ExactLens:
     half = [abs(s) + size / 2 for s, size in zip(camera.shift, film_mm, strict=True)]
     settings = _core.ExactLensSettings(
-        f_stop=sharp.f_stop,
+        f_stop=focused_lens.f_stop,
         iris=iris_of(camera),
-        focus_distance_m=sharp.distance,
+        focus_distance_m=focused_lens.distance,
         # The reconstruction filter reaches over the frame's edge.
         half_diagonal_mm=1.02 * math.hypot(*half),
-        film_z_mm=sharp.film_z,
+        film_z_mm=focused_lens.film_z,
         tilt_deg=camera.tilt,
         film_center_mm=camera.shift,
         film_half_mm=(0.51 * film_mm[0], 0.51 * film_mm[1]),
         fit_degree=fit_degree,
     )
-    with reported(sharp.lens.source):
-        return _core.ExactLens(sharp.lens.prescription, settings)
+    with reported(focused_lens.lens.source):
+        return _core.ExactLens(focused_lens.lens.prescription, settings)

@@ -101,7 +101,7 @@ class Meshes:
         skins: Skins of the file.
         variants: Chosen variant of the materials.
         scene: Receives the meshes.
-        copies: Budget of vertices that cannot be shared.
+        unshared: Budget of vertices that cannot be shared.
         notes: Receives notes on unsupported content.
     """
 
@@ -113,7 +113,7 @@ class Meshes:
         skins: Skins,
         variants: Variants,
         scene: Scene,
-        copies: Budget,
+        unshared: Budget,
         notes: Notes,
     ) -> None:
         self.items = root.list_of("meshes")
@@ -122,7 +122,7 @@ class Meshes:
         self._animations = animations
         self._skins = skins
         self._scene = scene
-        self._copies = copies
+        self._unshared = unshared
         self._work = Budget(_MAX_WORK, "displacements of vertices")
         self._notes = notes
         self._parts: dict[Hashable, list[Part]] = {}
@@ -258,13 +258,13 @@ class Meshes:
         """Morphs, then skins (3.7.2.2); returns triangles wound for the new vertices."""
         count = len(arrays["POSITION"])
         if source.displacements:
-            self._copies.spend(count, source.primitive)
+            self._unshared.spend(count, source.primitive)
             self._work.spend(count * len(source.displacements), source.primitive)
             morph(arrays, source.displacements, self._accessors)
         if source.skin is None:
             return triangles, None
         sets = sum(name.startswith("JOINTS_") for name in source.attributes)
-        self._copies.spend(count * sets, source.primitive)
+        self._unshared.spend(count * sets, source.primitive)
         found = self._skins.influences(source.attributes, source.skin, count)
         mirrored = skin(arrays, found, self._skins.matrices(source.skin))
         return np.where(mirrored[triangles[:, :1]], triangles[:, ::-1], triangles), found

@@ -47,13 +47,13 @@ class Placing:
 
     Args:
         scene: Scene with meshes and materials.
-        copies: Budget of vertices that cannot be shared.
+        unshared: Budget of vertices that cannot be shared.
         notes: Receives notes on unsupported content.
     """
 
-    def __init__(self, scene: Scene, copies: Budget, notes: Notes) -> None:
+    def __init__(self, scene: Scene, unshared: Budget, notes: Notes) -> None:
         self._scene = scene
-        self._copies = copies
+        self._unshared = unshared
         self._instances = Budget(MAX_INSTANCES, "instances in a scene")
         self._notes = notes
         self._default_material: int | None = None
@@ -97,7 +97,7 @@ class Placing:
             if rank == 3:
                 scene.add_instances(mesh, material, worlds[list(run)], name=name)
             for k in run if rank == 2 else ():
-                self._copies.spend(len(scene.meshes[mesh].positions), node)
+                self._unshared.spend(len(scene.meshes[mesh].positions), node)
                 scene.add_instance(self._flattened(mesh, worlds[k], name), material, name=name)
 
     def _add_moving(
@@ -105,7 +105,7 @@ class Placing:
     ) -> None:
         if motion.flat is not None:
             vertices = vertices_of(self._scene.meshes[mesh])
-            self._copies.spend(len(vertices.positions), node)
+            self._unshared.spend(len(vertices.positions), node)
             rest = replace(vertices, normals=None, tangents=None)
             mesh = self._flattened(mesh, world, name, FlatOverTime(motion.flat, rest))
             world = np.eye(4)

@@ -86,16 +86,16 @@ def read(
     with np.errstate(all="ignore"):
         document, notes = open_document(file, Folder(file, allow_dirs)), Notes()
         if document.packed is not None:
-            other = animated or time != 0 or (variant, scene_index) != (None, None)
-            found = _packed(document.packed, file, notes, other=other)
+            needs_gltf = animated or time != 0 or (variant, scene_index) != (None, None)
+            found = _packed(document.packed, file, notes, needs_gltf=needs_gltf)
             if found is not None:
                 return found
         return _GltfReader(file, float(time), variant, document, notes).read(scene_index)
 
 
-def _packed(chunk: memoryview, path: Path, notes: Notes, *, other: bool) -> Scene | None:
-    """Reads the exact scene; None, with a note, if another version wrote it or ``other``."""
-    if other:
+def _packed(chunk: memoryview, path: Path, notes: Notes, *, needs_gltf: bool) -> Scene | None:
+    """Reads the exact scene; None, with a note, if another version wrote it or ``needs_gltf``."""
+    if needs_gltf:
         notes.add(
             "the exact scene is stored for the time of its export only: plain glTF is read instead"
         )
@@ -129,7 +129,7 @@ class _GltfReader:
         self.poses = Poses(self.tree, self.animations)
         skins = Skins(self.root, self.accessors, self.tree, self.poses, self.notes)
         limit = max(_MAX_COPIES, sum(map(len, buffers)) // _BYTES_PER_COPY)
-        copies = Budget(limit, "vertices that are not shared")
+        unshared = Budget(limit, "vertices that are not shared")
         variants = Variants(self.root, variant)
         for name in variants.names:
             self.scene.add_variant(name)
@@ -140,10 +140,10 @@ class _GltfReader:
             skins,
             variants,
             self.scene,
-            copies,
+            unshared,
             self.notes,
         )
-        self.placing = Placing(self.scene, copies, self.notes)
+        self.placing = Placing(self.scene, unshared, self.notes)
         self.moving = MotionReader(self.root, self.animations, self.poses, time)
         self.cameras = self.root.list_of("cameras")
         self.lights = light_items(self.root)
@@ -155,17 +155,17 @@ class _GltfReader:
         textures = Textures(self.root, images.same, images.missing, self.notes)
         materials = read_materials(self.root, textures, self.notes)
         images.decode(textures.plans, scene)
-        again = partial(read_material, textures=textures.silenced(), notes=Silence())
+        read_moment = partial(read_material, textures=textures.silenced(), notes=Silence())
         for index, material in enumerate(materials):
-            scene.add_material(material, motion=self.moving.material(index, again))
+            scene.add_material(material, motion=self.moving.material(index, read_moment))
         placed = self.tree.place(self.tree.roots(self._scene_item(scene_index)))
         firsts = []
-        for position in placed:
+        for node in placed:
             firsts.append(len(scene.instances))
-            self._node(position)
+            self._node(node)
         self._collect(placed, [*firsts, len(scene.instances)])
-        for position in placed:
-            mark_catcher(scene, self.names[position.index], self.tree.items[position.index])
+        for node in placed:
+            mark_catcher(scene, self.names[node.index], self.tree.items[node.index])
         scene.note(*self.notes.sentences())
         return scene
 
@@ -202,16 +202,16 @@ class _GltfReader:
             self._light(chosen, placed, name)
 
     def _mesh(self, node: Item, placed: Placed, name: str) -> None:
-        copies = instance_transforms(node, self.accessors, self.notes)
+        instances = instance_transforms(node, self.accessors, self.notes)
         world = placed.world
         for part in self.meshes.parts(node):
-            worlds = world[None] if copies is None else world @ copies
+            worlds = world[None] if instances is None else world @ instances
             if part.in_world:
                 worlds = np.eye(4)[None]
-                if copies is not None:
+                if instances is not None:
                     self.notes.add("a mesh that a skin moves is shown once, not at its instances")
             moves = self.moving.instances(
-                placed.index, None if part.in_world else copies, worlds, rigid=part.in_world
+                placed.index, None if part.in_world else instances, worlds, rigid=part.in_world
             )
             self.placing.add(node, part.mesh, part.material, worlds, name, moves)
 
@@ -229,8 +229,8 @@ class _GltfReader:
         motion = self.moving.light(partial(read_light, name=name), item, placed.index)
         rigid = without_scale(placed.world)
         if motion is not None:
-            now, transform = motion.at(self.scene.time)
-            self.scene.add_light(now, transform, motion=motion)
+            current, transform = motion.at(self.scene.time)
+            self.scene.add_light(current, transform, motion=motion)
         elif rigid is None:
             self.notes.add("a light whose node is scaled to zero is left out")
         else:
@@ -239,10 +239,10 @@ class _GltfReader:
     def _collect(self, placed: list[Placed], firsts: list[int]) -> None:
         """Groups instances of each node and its descendants, which are contiguous."""
         left = _MAX_NODE_ENTRIES
-        for position, node in enumerate(placed):
-            first, last = firsts[position], firsts[node.end]
+        for place, node in enumerate(placed):
+            first, last = firsts[place], firsts[node.end]
             left -= last - first
             if left < 0:
                 self.notes.add("the name of a node deep in the tree selects its own meshes only")
-                last = firsts[position + 1]
+                last = firsts[place + 1]
             self.scene.group_instances(self.names[node.index], range(first, last))
