@@ -17,6 +17,7 @@
 #include "bind/unlocked.h"
 #include "math/error.h"
 #include "scene/scene.h"
+#include "transport/clear_way.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -229,6 +230,21 @@ std::optional<std::tuple<float, std::uint32_t>> first_hit(const Scene& scene, co
     return std::tuple{hit->t, hit->instance};
 }
 
+using WaySurface = std::tuple<Place, std::uint32_t, std::optional<Triple>>;
+
+std::vector<WaySurface> clear_surfaces(const Scene& scene, const Place& origin, const Triple& direction, float t_min) {
+    const Ray ray{.origin = to_float(vec(origin) - scene.origin()), .direction = normalize(vec(direction)),
+                  .time = 0.5f, .t_min = t_min};
+    std::vector<WaySurface> found;
+    for (const WayPoint& point : clear_way(scene, ray)) {
+        const Vec3d place = to_double(point.position) + scene.origin();
+        std::optional<Triple> onward;
+        if (point.onward) onward = {point.onward->x, point.onward->y, point.onward->z};
+        found.emplace_back(Place{place.x, place.y, place.z}, point.instance, onward);
+    }
+    return found;
+}
+
 std::vector<std::pair<std::uint32_t, float>> surroundings(const Scene& scene, const Place& point, float time) {
     std::vector<std::pair<std::uint32_t, float>> found;
     for (const auto& [instance, share] : scene.enclosing_solids(to_float(vec(point) - scene.origin()), time))
@@ -269,6 +285,9 @@ void bind_built_scene(nb::module_& m) {
         .def("surroundings", &surroundings, "point"_a, "time"_a,
              "Absorbing volumes around a point at a time (fraction of the interval): pairs of an instance and the share "
              "of directions in which its mesh is closed.")
+        .def("clear_way", &clear_surfaces, "origin"_a, "direction"_a, "t_min"_a = 0.f,
+             "Surfaces along a ray at mid-interval, which clear ones refract: position (m), instance, and the direction "
+             "behind it; None where the ray ends.")
         .def("first_hit", &first_hit, "origin"_a, "direction"_a, "t_min"_a = 0.f,
              "Distance (m) and instance index of the nearest surface at mid-interval, beyond t_min, or None.");
 }

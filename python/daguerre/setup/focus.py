@@ -17,6 +17,7 @@ from daguerre.scene.framing import bounds, is_framed
 from daguerre.scene.node_names import find_node, no_node
 from daguerre.scene.scene import Scene
 
+from .apparent import Behind, around_frame, behind_window
 from .near_clip import Directions, view_begins
 
 _VERTICES_AT_ONCE = 1 << 18
@@ -84,7 +85,8 @@ class Focus(BriefRecord):
         what = f"pixel {x:g},{y:g}" if camera.focus_at else "centre ray"
         direction = direction_of(film_x, film_y)
         start = view_begins(camera, direction_of, self.frame_mm, direction)
-        return self._along(direction, start, what)
+        around = around_frame(direction_of, self.frame_mm, camera.shift)
+        return self._along(direction, around, start, what)
 
     def settled(self, direction_at: Callable[[float], Directions]) -> Sharp:
         """Finds the focus of a tilted lens, where view directions depend on the focus.
@@ -98,8 +100,14 @@ class Focus(BriefRecord):
                 found = self.distance(direction_at(found.distance_m))
         return found
 
-    def _along(self, direction: NDArray[np.float64], start: float, what: str) -> Sharp:
+    def _along(
+        self, direction: NDArray[np.float64], around: NDArray[np.float64], start: float, what: str
+    ) -> Sharp:
         hit = None
+        if self.core_scene is not None:
+            behind = behind_window(self.core_scene, self.world, direction, around, start)
+            if behind is not None:
+                return self._behind(direction, behind, what)
         if self.core_scene is not None:
             origin = tuple(self.world[:3, 3])
             toward = tuple(self.world[:3, :3] @ direction)
@@ -112,6 +120,16 @@ class Focus(BriefRecord):
             return Sharp(math.inf, (note,))
         distance = depth if self.sharp_at is None else self.sharp_at(float(hit[0]) * direction)
         return Sharp(distance, (f"autofocus: {what} meets a surface {depth:.4g} m away",))
+
+    def _behind(self, direction: NDArray[np.float64], behind: Behind, what: str) -> Sharp:
+        """Focus on a surface behind a window, at its apparent distance."""
+        if math.isinf(behind.apparent_m):
+            return Sharp(math.inf, (f"autofocus: {what} meets nothing behind clear glass",))
+        place = behind.apparent_m * direction
+        depth = -float(place[2])
+        distance = depth if self.sharp_at is None else self.sharp_at(place)
+        note = f"autofocus: {what} meets a surface {behind.path_m:.4g} m away behind clear glass"
+        return Sharp(distance, (f"{note}, which appears {depth:.4g} m away",))
 
     def _unmet(self, what: str) -> Sharp:
         """Focus of a ray that meets nothing: infinity, or the scene, if its file has no camera."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from daguerre.camera.camera import Camera
 from daguerre.rendering.session import Session
+from daguerre.setup.apparent import around_frame, behind_window
 from daguerre.setup.near_clip import Directions, directions_of, view_begins
 from daguerre.setup.resolved import ResolvedLens
 
@@ -47,13 +48,20 @@ def distance_at(session: Session, x: float, y: float) -> float:
 def depth_m(session: Session, toward: NDArray[np.float64]) -> float:
     """Depth of the surface that a ray from the pupil meets, m; infinite: it meets none.
 
+    Behind a window that fills the picture, this is the apparent depth.
+
     Args:
         session: Session of the camera.
         toward: Unit direction in the camera's frame.
     """
     setup = session.prepared.setup
     pose = setup.world_from_camera
-    start = view_begins(setup.camera, _seen_by(session), setup.frame_size_mm, toward)
+    directions, frame = _seen_by(session), setup.frame_size_mm
+    start = view_begins(setup.camera, directions, frame, toward)
+    around = around_frame(directions, frame, setup.shift_mm)
+    behind = behind_window(session.built.core, pose, toward, around, start)
+    if behind is not None:
+        return behind.apparent_m * -float(toward[2])
     hit = session.built.core.first_hit(tuple(pose[:3, 3]), tuple(pose[:3, :3] @ toward), start)
     depth = math.inf if hit is None else float(hit[0]) * -float(toward[2])
     return depth if depth > 0 else math.inf
