@@ -9,6 +9,8 @@ picture of --reference-spp samples. ``mean`` is over the frame, ``typical`` with
 hundredth, as a few sparks decide the mean. CPU seconds to 0.01 are CPU seconds x error / 0.01.
 ``of_reference`` is the picture's mean over the reference's, in the frame and in the room alone
 (all that is darker than the gap of the door), where renderers should agree to 1 or 2 %.
+Mitsuba has two rows, for its samplers ``independent`` and ``multijitter``;
+``ratio_to_better_mitsuba`` is Daguerre's CPU seconds x error over the lower one of theirs.
 Renderers take turns, seed by seed, each in a process of its own.
 """
 
@@ -27,7 +29,13 @@ import numpy as np
 from peers import can_import, run
 
 SIDES = Path(__file__).resolve().parent / "ajar_door"
-MODULES = {"daguerre": "daguerre", "mitsuba": "mitsuba", "cycles": "bpy"}
+#: Renderers, and the modules that they need.
+MODULES = {
+    "daguerre": "daguerre",
+    "mitsuba": "mitsuba",
+    "mitsuba_multijitter": "mitsuba",
+    "cycles": "bpy",
+}
 BRIGHT = 3.0  # luminance of the reference, above which a pixel sees the corridor
 
 
@@ -36,7 +44,10 @@ def draw(
 ) -> tuple[np.ndarray, dict[str, Any]]:
     """One picture, (H, W, 3), and what its renderer said."""
     out = folder / f"{name}{seed}"
-    command = [options.pythons[name], str(SIDES / f"{name}_side.py"), "--out", str(out)]
+    program, _, sampler = name.partition("_")
+    command = [options.pythons[name], str(SIDES / f"{program}_side.py"), "--out", str(out)]
+    if program == "mitsuba":
+        command += ["--sampler", sampler or "independent"]
     sizes = {"w": options.w, "h": options.h, "threads": options.threads}
     for key, value in (sizes | {"spp": spp, "seed": seed}).items():
         command += [f"--{key}", str(value)]
@@ -90,6 +101,20 @@ def facts(
     return row | {"of_reference": of_reference(np.mean(pictures, axis=0), true)}
 
 
+def ratios(out: dict[str, Any]) -> dict[str, Any]:
+    """CPU seconds x error of Daguerre over the lower one of Mitsuba's samplers."""
+    key = "cpu_s_to_0.01"
+    theirs = [row[key] for name, row in out.items() if name.startswith("mitsuba")]
+    if not theirs or "daguerre" not in out:
+        return {}
+    return {
+        "ratio_to_better_mitsuba": {
+            kind: round(own / min(one[kind] for one in theirs), 3)
+            for kind, own in out["daguerre"][key].items()
+        }
+    }
+
+
 def main() -> None:
     """Measures and prints one JSON object."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
@@ -107,8 +132,8 @@ def main() -> None:
     options = parser.parse_args()
     if options.seeds < 2 or options.seeds % 2:
         parser.error(f"--seeds: wanted an even number, got {options.seeds}")
-    pythons = (sys.executable, options.mitsuba_python, options.blender_python)
-    options.pythons = dict(zip(MODULES, pythons, strict=True))
+    named = {"mitsuba": options.mitsuba_python, "bpy": options.blender_python}
+    options.pythons = {name: named.get(need, sys.executable) for name, need in MODULES.items()}
     names = [
         name for name in options.only or MODULES if can_import(options.pythons[name], MODULES[name])
     ]
@@ -128,6 +153,7 @@ def main() -> None:
                 drawn[name][0].append(picture)
                 drawn[name][1].append(said)
     out |= {name: facts(*drawn[name], true) for name in names}
+    out |= ratios(out)
     print(json.dumps(out, indent=1))
 
 

@@ -44,7 +44,7 @@ def mesh(name: str, points: np.ndarray, faces: np.ndarray, **parts: Any) -> Any:
     return made
 
 
-def scene(width: int, height: int, spp: int) -> Any:
+def scene(width: int, height: int, spp: int, sampler: str) -> Any:
     """The room as a scene."""
     matrix = room.camera_matrix() @ np.diag([-1, 1, -1, 1])  # it looks along +z, x to the left
     focal = room.CAMERA["focal_mm"]
@@ -62,7 +62,7 @@ def scene(width: int, height: int, spp: int) -> Any:
             "focus_distance": room.focus_distance(),
             "to_world": mi.ScalarTransform4f(matrix),
             "film": film | {"pixel_format": "rgb", "component_format": "float32"},
-            "sampler": {"type": "independent", "sample_count": spp},
+            "sampler": {"type": sampler, "sample_count": spp},
         },
     }
     for name, (shape, material) in room.build().items():
@@ -74,15 +74,16 @@ def scene(width: int, height: int, spp: int) -> Any:
 
 
 def main() -> None:
-    """Renders once and reports; one sample before that compiles."""
-    options = arguments()
+    """Renders once and reports; a picture before that compiles for this number of samples."""
+    options = arguments(sampler=str)
     dr.set_thread_count(options.threads)
-    made = scene(options.w, options.h, options.spp)
-    np.array(mi.render(made, spp=1, seed=999))
-    np.array(mi.render(made, spp=1, seed=998))
+    made = scene(options.w, options.h, options.spp, options.sampler)
+    np.array(mi.render(made, spp=options.spp, seed=999))
     before = cpu_seconds()
     picture = np.array(mi.render(made, spp=options.spp, seed=options.seed))
-    answer(options.out, picture, f"mitsuba {mi.__version__}", cpu_seconds() - before)
+    answer(
+        options.out, picture, f"mitsuba {mi.__version__} {options.sampler}", cpu_seconds() - before
+    )
 
 
 if __name__ == "__main__":

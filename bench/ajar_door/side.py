@@ -1,10 +1,11 @@
-"""Arguments and the answer of one renderer's program; see ``bench/ajar.py``."""
+"""Arguments and the answer of one renderer's program; ``ajar.py`` and ``rooms.py`` run them."""
 
 from __future__ import annotations
 
 import argparse
 import json
 import resource
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,14 @@ import numpy as np
 DEPTH = 12  # surfaces of a path
 
 
-def arguments() -> argparse.Namespace:
-    """The same for each renderer."""
+def arguments(**more: Callable[[str], object]) -> argparse.Namespace:
+    """The same for each renderer, and ``more`` by their types."""
     parser = argparse.ArgumentParser()
     for name in ("w", "h", "spp", "seed", "threads"):
         parser.add_argument(f"--{name}", type=int, required=True)
     parser.add_argument("--out", type=Path, required=True)
+    for name, kind in more.items():
+        parser.add_argument(f"--{name}", type=kind, required=True)
     return parser.parse_args()
 
 
