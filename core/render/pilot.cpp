@@ -18,7 +18,9 @@ constexpr std::uint32_t kSamples = 2;       // per pilot pixel: the fewest that 
 constexpr int kPixelsPerPath = 16;
 constexpr std::uint64_t kFewestPaths = 2048, kMostPaths = 1 << 18;
 constexpr std::uint64_t kPathsPerTask = 1024;
-constexpr std::uint64_t kOwnRandom = 0x9170;
+constexpr int kMostRounds = 3;              // of light paths: each doubles their number while the plan is unsure
+// Seeds. They do not depend on the picture's, so that all seeds of a picture have the same plan.
+constexpr std::uint64_t kCameraSeed = hash64(0x9170), kLightSeed = hash64(0x9170, 1);
 
 // Prices in rays; a ray with shading takes 350 to 750 ns. Measured on the table of
 // scenes/lens_scenes/photographer.py with the cameras of bench/night.py. Rough values suffice, as the error is flat
@@ -48,7 +50,7 @@ RenderSettings coarse(const RenderSettings& picture, int side) {
     s.sensor.height = (picture.sensor.height + side - 1) / side;
     s.sample_begin = 0, s.sample_end = kSamples;
     s.round = {};
-    s.seed = hash64(picture.seed, kOwnRandom);
+    s.seed = kCameraSeed;
     ShutterSettings shutter = picture.shutter.settings();
     shutter.line_time_s *= side;
     s.shutter = Shutter(shutter, s.sensor.width, s.sensor.height);
@@ -67,7 +69,7 @@ class Pilot {
           coarse_(coarse(settings, side_)),
           frame_{settings.sensor.width, settings.sensor.height},
           density_(settings.filter, frame_, {}, &settings.shutter) {
-        settings_.seed = hash64(settings.seed, kOwnRandom, 1);
+        settings_.seed = kLightSeed;
         settings_.light = {1, 1, settings.light.sky};
         settings_.technique = Technique::both;
         if (!scene.textures().empty()) cone_ = PixelCone(camera, settings.sensor);
@@ -79,25 +81,43 @@ class Pilot {
         const LightWeight weight(scene_, camera_, settings_.sensor, density_, settings_.light,
                                  settings_.technique, settings_.light_guide);
         if (weight.emission().empty() && !weight.bounces()) return {};
-        const double lens = price_of(camera_.lens);
-        double rays = 0;
-        const std::vector<PilotArrival> straight = fly<StraightLightPass>(weight, rays);
-        costs_.straight = kPath + lens + rays * (1 + kSplat);
-        std::vector<PilotArrival> bounced;
-        if (weight.bounces()) bounced = fly<BouncedLightPass>(weight, rays);
-        costs_.bounced = kPath + rays * (1 + kConnected * lens);
-        if (straight.empty() && bounced.empty()) return {};
+        Flights straight, bounced;
+        fly<StraightLightPass>(weight, straight);
+        if (weight.bounces()) fly<BouncedLightPass>(weight, bounced);
+        if (straight.arrivals.empty() && bounced.arrivals.empty()) return {};
         const std::vector<PilotBlock> blocks = look();
-        costs_.camera = pixels() * (kSample + lens + rays_per_sample_);
-        costs_.sharing = pixels() * kShare;
-        costs_.sharing_bounced = pixels() * kShareOfRay * rays_per_sample_;
-        return choose_plan({blocks, coarse_.sensor.width, pixels() / double(blocks.size())},
-                           {straight, paths()}, {bounced, paths()}, costs_);
+        const PilotPicture picture{blocks, coarse_.sensor.width, pixels() / double(blocks.size())};
+        for (int round = 1;; ++round) {
+            const PlanChoice choice =
+                choose_plan(picture, straight.pilot(), bounced.pilot(), costs(straight, bounced));
+            if (choice.sure || round == kMostRounds) return choice.plan;
+            fly<StraightLightPass>(weight, straight);
+            if (weight.bounces()) fly<BouncedLightPass>(weight, bounced);
+        }
     }
 
   private:
+    /// The light paths of one kind so far.
+    struct Flights {
+        std::vector<PilotArrival> arrivals;   // in the order of the paths, independent of threads
+        std::uint64_t paths = 0;
+        double rays = 0;
+
+        PilotArrivals pilot() const { return {arrivals, paths}; }
+        double rays_per_path() const { return paths > 0 ? rays / double(paths) : 0; }
+    };
+    PlanCosts costs(const Flights& straight, const Flights& bounced) const {
+        const double lens = price_of(camera_.lens);
+        PlanCosts costs;
+        costs.straight = kPath + lens + straight.rays_per_path() * (1 + kSplat);
+        costs.bounced = kPath + bounced.rays_per_path() * (1 + kConnected * lens);
+        costs.camera = pixels() * (kSample + lens + rays_per_sample_);
+        costs.sharing = pixels() * kShare;
+        costs.sharing_bounced = pixels() * kShareOfRay * rays_per_sample_;
+        return costs;
+    }
     double pixels() const { return double(frame_.width) * frame_.height; }
-    std::uint64_t paths() const {
+    std::uint64_t first_paths() const {
         return std::clamp(std::uint64_t(pixels()) / kPixelsPerPath, kFewestPaths, kMostPaths);
     }
 
@@ -117,31 +137,29 @@ class Pilot {
         return blocks;
     }
 
-    /// Draws light paths of one kind, and measures the rays per path.
+    /// Draws light paths of one kind: the first, or as many as there are.
     template <typename LightPassKind>
-    std::vector<PilotArrival> fly(const LightWeight& weight, double& rays_per_path) const {
+    void fly(const LightWeight& weight, Flights& flights) const {
         Film nowhere(FilmLayout{1, 1});   // arrivals are logged instead of splatted
         const LightPassKind pass({scene_, camera_, nowhere, settings_, density_}, weight, cone_);
-        const std::uint64_t tasks = (paths() + kPathsPerTask - 1) / kPathsPerTask;
+        const std::uint64_t begin = flights.paths, end = begin > 0 ? 2 * begin : first_paths();
+        const std::uint64_t tasks = (end - begin + kPathsPerTask - 1) / kPathsPerTask;
         std::vector<std::vector<LoggedSplat>> found(tasks);
         std::vector<std::uint64_t> rays(tasks);
         parallel_tasks(settings_.threads, std::int64_t(tasks), [&](std::int64_t task) {
             LightPass::Workspace work;
             work.log = &found[task];
-            const std::uint64_t first = std::uint64_t(task) * kPathsPerTask;
-            pass.draw(work, first, std::min(first + kPathsPerTask, paths()));
+            const std::uint64_t first = begin + std::uint64_t(task) * kPathsPerTask;
+            pass.draw(work, first, std::min(first + kPathsPerTask, end));
             rays[task] = work.counters.rays;
         });
-        std::vector<PilotArrival> all;   // in the order of the paths, independent of threads
-        double ray_count = 0;
         for (std::uint64_t t = 0; t < tasks; ++t) {
             for (const LoggedSplat& s : found[t])
-                all.push_back({block_of(s.pixel), rgb_from_xyz(s.xyz), float(s.camera_over_light),
-                               s.spread, s.path});
-            ray_count += double(rays[t]);
+                flights.arrivals.push_back({block_of(s.pixel), rgb_from_xyz(s.xyz), float(s.camera_over_light),
+                                            s.spread, s.path});
+            flights.rays += double(rays[t]);
         }
-        rays_per_path = ray_count / double(paths());
-        return all;
+        flights.paths = end;
     }
 
     std::uint32_t block_of(Pixel pixel) const {
@@ -158,7 +176,6 @@ class Pilot {
     FilmLayout frame_;
     FilmDensity density_;
     PixelCone cone_;
-    PlanCosts costs_;
     double rays_per_sample_ = 0;
 };
 

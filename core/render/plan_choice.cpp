@@ -21,6 +21,8 @@ struct Candidate {
     int straight = 0, bounced = 0;
 };
 
+enum class Verdict { no, unsure, yes };
+
 class Judge {
   public:
     Judge(const NoiseCurves& straight, const NoiseCurves& bounced, double rest, const PlanCosts& costs)
@@ -32,15 +34,16 @@ class Judge {
         return std::log(cost(b) * error(b, bounces, left_out)) -
                std::log(cost(a) * error(a, bounces, left_out));
     }
-    /// Whether the gain is significant, by the jackknife over groups of paths.
-    bool sure(Candidate a, Candidate b, bool bounces) const {
+    /// Whether the gain exceeds kWorth, with its standard error by the jackknife over groups of paths.
+    Verdict verdict(Candidate a, Candidate b, bool bounces) const {
         std::array<double, kGroups> gains;
         for (int g = 0; g < kGroups; ++g) gains[g] = gain(a, b, bounces, g);
         const double mean = std::accumulate(gains.begin(), gains.end(), 0.0) / kGroups;
         double variance = 0;
         for (const double x : gains) variance += (x - mean) * (x - mean);
         variance *= double(kGroups - 1) / kGroups;
-        return gain(a, b, bounces) - kSure * std::sqrt(variance) > std::log(kWorth);
+        const double more = gain(a, b, bounces) - std::log(kWorth), error = kSure * std::sqrt(variance);
+        return more > error ? Verdict::yes : more > -error ? Verdict::unsure : Verdict::no;
     }
     /// The best candidate within the cost limits.
     Candidate best(bool bounces) const {
@@ -78,20 +81,24 @@ class Judge {
 
 }  // namespace
 
-LightPlan choose_plan(const PilotPicture& picture, const PilotArrivals& straight,
-                      const PilotArrivals& bounced, const PlanCosts& costs) {
+PlanChoice choose_plan(const PilotPicture& picture, const PilotArrivals& straight,
+                       const PilotArrivals& bounced, const PlanCosts& costs) {
     const std::vector<Vec3f> weights = weights_of(picture, straight);
     const std::vector<PilotArrival> usual = seen(bounced, weights);
     const NoiseCurves of_straight = curves_of(straight, weights, picture.pixels),
                  of_bounced = curves_of({usual, bounced.paths}, weights, picture.pixels);
     const Judge judge(of_straight, of_bounced, rest_of(picture, weights), costs);
     Candidate plan = judge.best(false);
-    if (!judge.sure(plan, {}, false)) plan = {};
+    Verdict verdict = judge.verdict(plan, {}, false);
+    bool sure = verdict != Verdict::unsure;
+    if (verdict != Verdict::yes) plan = {};
     if (!usual.empty()) {
         const Candidate bounces = judge.best(true);
-        if (bounces.bounced > 0 && judge.sure(bounces, plan, true)) plan = bounces;
+        verdict = bounces.bounced > 0 ? judge.verdict(bounces, plan, true) : Verdict::no;
+        sure = sure && verdict != Verdict::unsure;
+        if (verdict == Verdict::yes) plan = bounces;
     }
-    return {paths_of(plan.straight), paths_of(plan.bounced)};
+    return {{paths_of(plan.straight), paths_of(plan.bounced)}, sure};
 }
 
 }  // namespace dg

@@ -58,14 +58,20 @@ struct PlanCosts {
     double bounced = 0;         // a light path with bounces
 };
 
+struct PlanChoice {
+    LightPlan plan;
+    /// False: more arrivals could turn the decision for or against light paths.
+    bool sure = true;
+};
+
 /// Minimizes cost x error, with the error as the mean over pixels and channels of variance / (mean^2 + 0.01), as in
 /// --noise. A sample with light paths costs at most four times a sample without; bounced paths may cost as much as the
 /// camera sample. The number of direct paths is chosen first, against the variance that the camera samples have seen of
 /// the remaining light: fireflies that the pilot missed must not prevent direct paths, which clean up discs of light.
 /// Then bounced paths are chosen. Either kind must gain more than kWorth by two standard errors of a jackknife over
 /// eighths of the paths, so that no single path decides.
-LightPlan choose_plan(const PilotPicture& picture, const PilotArrivals& straight,
-                      const PilotArrivals& bounced, const PlanCosts& costs);
+PlanChoice choose_plan(const PilotPicture& picture, const PilotArrivals& straight,
+                       const PilotArrivals& bounced, const PlanCosts& costs);
 
 /// Least ratio of cost x error without a plan to cost x error with it.
 inline constexpr double kWorth = 1.1;

@@ -51,6 +51,11 @@ std::vector<PilotBlock> even_blocks(float mean, float variance) {
 
 PilotPicture picture(const std::vector<PilotBlock>& blocks) { return {blocks, kColumns, kPixels}; }
 
+LightPlan plan_of(const std::vector<PilotBlock>& blocks, const PilotArrivals& straight, const PilotArrivals& bounced,
+                  const PlanCosts& costs) {
+    return choose_plan(picture(blocks), straight, bounced, costs).plan;
+}
+
 }  // namespace
 
 TEST_CASE("plan choice: second moments of both techniques are what drawing them gives") {
@@ -82,7 +87,7 @@ TEST_CASE("plan choice: rare lamps get as many paths as the closed form wants") 
     const std::vector<PilotBlock> blocks = even_blocks(0.1f, rest);
     const std::vector<PilotArrival> all = disc.arrivals(40'000);
     for (const double cost : {2e-6, 2e-5, 2e-4}) {   // at most four times the cost of a sample
-        const LightPlan plan = choose_plan(picture(blocks), {all, 40'000}, {}, {.straight = cost, .bounced = cost});
+        const LightPlan plan = plan_of(blocks, {all, 40'000}, {}, {.straight = cost, .bounced = cost});
         const double dark = kBlocks * kPixels * rest / (0.01 + 0.01);   // counts the few lit blocks, too
         const double lit = std::pow(2.1, 2) + 0.01;
         double best = 1e300, wanted = 0;
@@ -99,13 +104,13 @@ TEST_CASE("plan choice: rare lamps get as many paths as the closed form wants") 
 constexpr PlanCosts kCheap{.straight = 1e-5, .bounced = 1e-5};
 
 TEST_CASE("plan choice: no paths where they gain nothing") {
-    CHECK(choose_plan(picture(even_blocks(1, 0.3f)), {}, {}, kCheap).off());
+    CHECK(plan_of(even_blocks(1, 0.3f), {}, {}, kCheap).off());
 
     // A large emitter that every camera sample hits.
     const Disc broad{kBlocks, 1.0, 1.0, 0.5};
     const std::vector<PilotArrival> many = broad.arrivals(20'000);
-    CHECK(choose_plan(picture(even_blocks(0, 0.1f)), {many, 20'000}, {}, kCheap).off());
-    CHECK(choose_plan(picture(even_blocks(1, 0.3f)), {}, {many, 20'000}, kCheap).off());
+    CHECK(plan_of(even_blocks(0, 0.1f), {many, 20'000}, {}, kCheap).off());
+    CHECK(plan_of(even_blocks(1, 0.3f), {}, {many, 20'000}, kCheap).off());
 }
 
 TEST_CASE("plan choice: what the camera finds rarely is noise, however few samples have met it") {
@@ -114,8 +119,8 @@ TEST_CASE("plan choice: what the camera finds rarely is noise, however few sampl
     for (int b = 0; b < kBlocks; b += 11) sparks[b] = {{1, 1, 1}, {2, 2, 2}};
     const Disc disc{6, 1.0 / 40, 2.0, 0.4};
     const std::vector<PilotArrival> all = disc.arrivals(40'000);
-    CHECK(choose_plan(picture(sparks), {all, 40'000}, {}, kCheap).off());   // fireflies would remain
-    CHECK(choose_plan(picture(even_blocks(0.1f, 1e-3f)), {all, 40'000}, {}, kCheap).m1 > 0);
+    CHECK(plan_of(sparks, {all, 40'000}, {}, kCheap).off());   // fireflies would remain
+    CHECK(plan_of(even_blocks(0.1f, 1e-3f), {all, 40'000}, {}, kCheap).m1 > 0);
 }
 
 TEST_CASE("plan choice: no paths for one that was lucky") {
@@ -123,17 +128,31 @@ TEST_CASE("plan choice: no paths for one that was lucky") {
     // A bright path that the camera finds rarely: plans would gain if more than one light path found it.
     std::vector<PilotArrival> lucky;
     for (int k = 0; k < 10; ++k) lucky.push_back({0, {1e5f, 1e5f, 1e5f}, 200, 1, 77});
-    CHECK(choose_plan(picture(blocks), {}, {lucky, 20'000}, kCheap).off());
-    CHECK(choose_plan(picture(blocks), {lucky, 20'000}, {}, kCheap).off());
+    CHECK(plan_of(blocks, {}, {lucky, 20'000}, kCheap).off());
+    CHECK(plan_of(blocks, {lucky, 20'000}, {}, kCheap).off());
     for (int k = 0; k < 10; ++k) lucky[k].path = k * 2000;
-    CHECK(choose_plan(picture(blocks), {}, {lucky, 20'000}, kCheap).m2 > 0);
+    CHECK(plan_of(blocks, {}, {lucky, 20'000}, kCheap).m2 > 0);
     // Brighter paths that occur only in few pictures.
     for (PilotArrival& a : lucky) a.ratio = 1;
-    CHECK(choose_plan(picture(blocks), {}, {lucky, 20'000}, kCheap).off());
+    CHECK(plan_of(blocks, {}, {lucky, 20'000}, kCheap).off());
 
     const Disc caustic{3, 1e-3, 1, 0.2};
     const std::vector<PilotArrival> bright = caustic.arrivals(20'000);
-    const LightPlan plan = choose_plan(picture(blocks), {}, {bright, 20'000}, kCheap);
+    const LightPlan plan = plan_of(blocks, {}, {bright, 20'000}, kCheap);
     CHECK(plan.m1 == 0);
     CHECK(plan.m2 > 0);
+}
+
+TEST_CASE("plan choice: few arrivals leave a gain open, many decide it") {
+    const Disc caustic{3, 2e-3, 1, 0.2};
+    const std::vector<PilotBlock> blocks = even_blocks(1, 0.01f);
+    const auto choice = [&](int paths) {
+        const std::vector<PilotArrival> all = caustic.arrivals(paths);
+        return choose_plan(picture(blocks), {}, {all, std::uint64_t(paths)}, kCheap);
+    };
+    CHECK_FALSE(choice(8).sure);
+    CHECK(choice(8).plan.off());
+    CHECK(choice(20'000).sure);
+    CHECK(choice(20'000).plan.m2 > 0);
+    CHECK(choose_plan(picture(blocks), {}, {}, kCheap).sure);
 }

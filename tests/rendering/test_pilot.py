@@ -36,10 +36,10 @@ def test_small_lamps_out_of_focus_get_light_paths() -> None:
     assert plan(lamps(0.002))[0] >= 1000
 
 
-@pytest.mark.parametrize("change", [{"threads": 3}, {"aovs": True}])
-def test_the_plan_depends_on_no_threads(change: dict[str, Any]) -> None:
+@pytest.mark.parametrize("change", [{"threads": 3}, {"aovs": True}, {"seed": 7}, {"seed": 8}])
+def test_the_plan_depends_on_neither_threads_nor_seed(change: dict[str, Any]) -> None:
     scene = lamps(0.002)
-    assert plan(scene, threads=1) == plan(scene, **change)
+    assert plan(scene, threads=1) == plan(scene, **change) != OFF
 
 
 def test_a_crop_has_its_share_of_the_light_paths() -> None:
