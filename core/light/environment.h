@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "math/distribution.h"
 #include "math/transform.h"
 #include "motion/keyed.h"
 #include "spectrum/wavelengths.h"
@@ -13,7 +12,8 @@ namespace dg {
 
 /// In the picture, row 0 is the zenith (+y up, as in glTF), the center column is in the direction -z, and 1.0 is
 /// `scale` cd/m2. Lookup is bilinear, and wraps in azimuth. Sampling uses the luminance of the same bilinear function
-/// (with rows interpolated in cos theta), so that pdf > 0 wherever radiance > 0.
+/// (with rows interpolated in cos theta), or the mean of blocks in which it differs little (sky_blocks.h), so that
+/// pdf > 0 wherever radiance > 0.
 struct EnvironmentImage {
     int width = 0, height = 0;
     std::vector<Rgb> pixels;
@@ -36,6 +36,9 @@ class Environment {
                              const Affine3f& world_from_environment);
     /// A copy with poses over time. Throws Error for a pose that is not finite or has a negative strength.
     Environment posed(Keyed<EnvironmentPose> poses) const;
+    /// A copy for light sampling that is combined with BSDF sampling: samples leave the even part of the picture to the
+    /// other strategy (sky_grid.h). The light is the same.
+    Environment compensated() const;
 
     Rgb luminance(Vec3f direction, float time) const {
         return poses_ ? luminance_posed(direction, time) : luminance_within(direction);
@@ -43,6 +46,7 @@ class Environment {
     struct Sample {
         Vec3f direction;
         float pdf;
+        float luminance = 0;  // estimate of the luminance from there, cd/m2; > 0 where the luminance is
     };
     Sample sample(Vec2f u, float time) const {
         return poses_ ? sample_posed(u, time) : sample_within(u);
@@ -50,6 +54,12 @@ class Environment {
     float pdf(Vec3f direction, float time) const {
         return poses_ ? pdf_posed(direction, time) : pdf_within(direction);
     }
+    /// luminance() and pdf() in one look-up.
+    struct Seen {
+        Rgb luminance;
+        float pdf;
+    };
+    Seen look(Vec3f direction, float time) const;
     /// Converts directions between world and picture at a time. Identity for a uniform colour.
     Vec3f to_picture(Vec3f direction, float time) const;
     Vec3f to_world(Vec3f direction, float time) const;
@@ -62,6 +72,7 @@ class Environment {
     Rgb luminance_within(Vec3f direction) const;
     Sample sample_within(Vec2f u) const;
     float pdf_within(Vec3f direction) const;
+    Seen look_within(Vec3f direction) const;
     Vec3f turned(Vec3f direction, float time, float sign) const;
     Rgb luminance_posed(Vec3f direction, float time) const;
     Sample sample_posed(Vec2f u, float time) const;

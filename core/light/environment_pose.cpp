@@ -42,14 +42,23 @@ Rgb Environment::luminance_posed(Vec3f direction, float time) const {
 }
 
 Environment::Sample Environment::sample_posed(Vec2f u, float time) const {
+    const EnvironmentPose now = poses_->at(time);
     Sample s = sample_within(u);
-    s.direction = normalize(turned_about_y(s.direction, poses_->at(time).turn));
-    s.pdf = pdf_posed(s.direction, time);  // for the rounded direction
+    s.direction = normalize(turned_about_y(s.direction, now.turn));
+    s.luminance *= dg::luminance(now.strength);
     return s;
 }
 
 float Environment::pdf_posed(Vec3f direction, float time) const {
     return pdf_within(turned_about_y(direction, -poses_->at(time).turn));
+}
+
+Environment::Seen Environment::look(Vec3f direction, float time) const {
+    if (!poses_) return look_within(direction);
+    const EnvironmentPose now = poses_->at(time);
+    Seen seen = look_within(turned_about_y(direction, -now.turn));
+    seen.luminance = seen.luminance * now.strength;
+    return seen;
 }
 
 }  // namespace dg

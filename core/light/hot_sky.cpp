@@ -15,9 +15,11 @@ constexpr double kHot = 4;
 HotSky::HotSky(const Environment& environment, std::span<const ViewCone> views)
     : environment_(environment) {
     if (environment.is_constant()) return;
-    const Environment::Picture& p = *environment.picture_;
-    if (!(p.total > 0)) return;
-    strength_ = environment.mean_luminance() / (p.total / (4 * kPiD));
+    const Environment::Picture& picture = *environment.picture_;
+    const double total = picture.blocks.total();
+    if (!(total > 0)) return;
+    const SkyGrid& p = picture.grid;
+    strength_ = environment.mean_luminance() / (total / (4 * kPiD));
     const float spread = kPi / float(std::min(p.width / 2, p.height)) * 1.5f;   // bound of a cell's size
     const auto in_view = [&](Vec3f direction) {
         return std::ranges::any_of(views, [&](const ViewCone& view) {
@@ -28,9 +30,9 @@ HotSky::HotSky(const Environment& environment, std::span<const ViewCone> views)
     std::vector<double> weights;
     double sum = 0, solid_angle = 0;
     for (int r = 0; r <= p.height; ++r) {
-        const double cell = 2 * kPiD / p.width * (double(p.cos_edge[r]) - p.cos_edge[r + 1]);
+        const double cell = p.solid_angle(r);
         for (int c = 0; c < p.width; ++c) {
-            if (!in_view(p.direction(c, r, 0.5f, 0.5f))) continue;
+            if (!in_view(p.center(c, r))) continue;
             visible.push_back(std::uint32_t(r) * p.width + c);
             weights.push_back(p.weight(c, r));
             sum += weights.back(), solid_angle += cell;
@@ -39,7 +41,7 @@ HotSky::HotSky(const Environment& environment, std::span<const ViewCone> views)
     std::vector<double> kept;
     for (std::size_t i = 0; i < visible.size(); ++i) {
         const int r = visible[i] / p.width;
-        const double cell = 2 * kPiD / p.width * (double(p.cos_edge[r]) - p.cos_edge[r + 1]);
+        const double cell = p.solid_angle(r);
         if (!(weights[i] > kHot * cell * sum / solid_angle)) continue;
         index_.push_back(visible[i]);
         kept.push_back(weights[i]);
@@ -50,7 +52,7 @@ HotSky::HotSky(const Environment& environment, std::span<const ViewCone> views)
 }
 
 void HotSky::mark_hot() {
-    const Environment::Picture& p = *environment_.picture_;
+    const SkyGrid& p = environment_.picture_->grid;
     std::vector<bool> hot(std::size_t(p.width) * (p.height + 1));
     for (const std::uint32_t i : index_) hot[i] = true;
     hot_ = std::make_shared<const std::vector<bool>>(std::move(hot));
@@ -58,7 +60,7 @@ void HotSky::mark_hot() {
 
 std::vector<HotSky> HotSky::parts(int most) const {
     if (cells_.empty()) return {};
-    const Environment::Picture& p = *environment_.picture_;
+    const SkyGrid& p = environment_.picture_->grid;
     constexpr int kAcross = 16, kDown = 8;
     std::vector<std::vector<std::uint32_t>> members(kAcross * kDown);
     std::vector<double> weights(members.size());
@@ -93,19 +95,20 @@ std::vector<HotSky> HotSky::parts(int most) const {
 }
 
 Environment::Sample HotSky::sample(Vec2f u, float time) const {
-    const Environment::Picture& p = *environment_.picture_;
+    const SkyGrid& p = environment_.picture_->grid;
     const DiscreteSample cell = cells_.sample(u.x);
     const std::uint32_t at = index_[cell.index];
-    const Vec3f d = p.sample_in(at % p.width, at / p.width, {cell.u_remapped, u.y});
+    const Vec3f d = p.sample_in(at % p.width, at / p.width, {cell.u_remapped, u.y}).direction;
     const Vec3f world = normalize(environment_.to_world(d, time));
     return {world, pdf(world, time)};   // for the rounded direction
 }
 
 float HotSky::pdf(Vec3f direction, float time) const {
     if (cells_.empty()) return 0;
-    const Environment::Picture& p = *environment_.picture_;
-    const auto [c, r, luminance] = p.place(environment_.to_picture(direction, time));
-    return (*hot_)[std::size_t(r) * p.width + c] ? luminance / float(cells_.sum()) : 0;
+    const SkyGrid& p = environment_.picture_->grid;
+    const Vec3f d = environment_.to_picture(direction, time);
+    const SkyGrid::Place at = p.place(p.texels(d));
+    return (*hot_)[std::size_t(at.r) * p.width + at.c] ? p.weight(at, d) / float(cells_.sum()) : 0;
 }
 
 }  // namespace dg

@@ -10,7 +10,7 @@
 
 namespace dg {
 
-/// Cells of the picture (environment.cpp) in the field of view that are much brighter than its mean, sampled by
+/// Cells of the picture (sky_grid.h) in the field of view that are much brighter than its mean, sampled by
 /// luminance. Excludes the remaining picture, which camera paths sample well.
 class HotSky {
   public:

@@ -55,9 +55,10 @@ LightSet::LightSet(LightSet&&) noexcept = default;
 LightSet& LightSet::operator=(LightSet&&) noexcept = default;
 
 LightSet::LightSet(std::vector<Light> lights, std::optional<Environment> environment,
-                   LightChoice choice, LightMotion motion, LightProfiles profiles)
+                   LightChoice choice, LightMotion motion, LightProfiles profiles, SkyDensity sky)
     : lights_(std::move(lights)),
       environment_(std::move(environment)),
+      sampled_(sky == SkyDensity::compensated && environment_ ? environment_->compensated() : environment_),
       motion_(std::move(motion)),
       profiles_(std::move(profiles)) {
     std::string where;   // shared by all lights, as allocating a million strings is slow
@@ -363,6 +364,7 @@ bool LightSet::sample_local(const LightTree::Choice& choice, float p_local, Vec2
 std::optional<LightSample> LightSet::sample_infinite(
     float u_select, float p_infinite, Vec2f u, float time,
     const Wavelengths& wavelengths) const {
+    if (infinite_lights_.size() == 1) return sample_infinite_at(0, p_infinite, u, time, wavelengths);
     const DiscreteSample choice = infinite_.sample(u_select);
     return sample_infinite_at(choice.index, p_infinite * choice.pmf, u, time, wavelengths);
 }
@@ -373,10 +375,11 @@ std::optional<LightSample> LightSet::sample_infinite_at(int index, float probabi
     LightSample sample{};
     sample.distance = std::numeric_limits<float>::infinity();
     if (light == kEnvironment) {
-        const Environment::Sample s = environment_->sample(u, time);
+        const Environment::Sample s = sampled_->sample(u, time);
         if (!(s.pdf > 0)) return std::nullopt;
         sample.wi = s.direction;
-        sample.radiance = environment_radiance(s.direction, time, wavelengths);
+        sample.radiance = wavelengths.d65 * s.luminance;
+        sample.uneven = true;
         sample.pdf = s.pdf * probability;
         return sample;
     }
@@ -431,7 +434,7 @@ float LightSet::pdf_sphere(std::uint32_t sphere, Vec3f position, float time) con
 float LightSet::pdf_environment(Vec3f direction, Vec3f position, float time) const {
     if (environment_pmf_ <= 0) return 0;
     return infinite_probability(position) * environment_pmf_ *
-           environment_->pdf(direction, time);
+           sampled_->pdf(direction, time);
 }
 
 Spectrum LightSet::sphere_radiance(std::uint32_t sphere, Vec3f away, float time,
@@ -445,6 +448,13 @@ Spectrum LightSet::environment_radiance(Vec3f direction, float time,
                                         const Wavelengths& wavelengths) const {
     if (!environment_) return Spectrum(0.f);
     return wavelengths.emission(environment_->luminance(direction, time));
+}
+
+LightSet::SkySeen LightSet::look_at_environment(Vec3f direction, Vec3f position, float time,
+                                                const Wavelengths& wavelengths) const {
+    if (environment_pmf_ <= 0) return {environment_radiance(direction, time, wavelengths), 0};
+    const Environment::Seen seen = sampled_->look(direction, time);
+    return {wavelengths.emission(seen.luminance), infinite_probability(position) * environment_pmf_ * seen.pdf};
 }
 
 }  // namespace dg

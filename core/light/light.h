@@ -95,7 +95,8 @@ struct LightSample {
     /// third corner).
     std::int32_t light = -1;
     Vec2f barycentric;
-    /// Non-uniform triangle: the scene evaluates the emission at the point.
+    /// Non-uniform triangle, or picture of a sky: `radiance` is an estimate, for choosing among samples,
+    /// and Scene::radiance() evaluates the emission at the point.
     bool uneven = false;
     float error = 0;  // m: error bound of the distance at which a ray along wi hits the lamp
 };
@@ -106,6 +107,10 @@ struct EmitterSample;
 
 /// Choice among lights with a position: by the tree; by power alone or uniformly, to measure the benefit of the tree.
 enum class LightChoice { tree, power, even };
+
+/// Density of samples of an environment's picture: by luminance; or compensated for MIS with BSDF sampling, which is
+/// better where both are used at each vertex.
+enum class SkyDensity { luminance, compensated };
 
 /// All lights of a scene, with a distribution for choosing a light at a point: by the estimated illuminance of each
 /// light, which works for huge scenes and for near lamps. Lights from infinity (directional, environment) form one
@@ -120,11 +125,12 @@ class LightSet {
     /// Throws Error that names light and value: for non-finite values, a negative colour, a zero direction, a radius or
     /// range that is not positive, or spot angles in the wrong order.
     LightSet(std::vector<Light> lights, std::optional<Environment> environment,
-             LightChoice choice = LightChoice::tree, LightMotion motion = {}, LightProfiles profiles = {});
+             LightChoice choice = LightChoice::tree, LightMotion motion = {}, LightProfiles profiles = {},
+             SkyDensity sky = SkyDensity::luminance);
 
     bool empty() const { return tree_.empty() && infinite_.empty(); }
-    /// Samples a light. The radiance of triangle lights is mean_luminance; if LightSample::uneven, the caller must
-    /// replace it by the textured value. Empty if the chosen light cannot illuminate the position.
+    /// Samples a light. If LightSample::uneven, its radiance is an estimate. Empty if the chosen light cannot
+    /// illuminate the position.
     std::optional<LightSample> sample(float u_select, Vec2f u, Vec3f position, float time,
                                       const Wavelengths& wavelengths) const;
     static constexpr std::size_t kMostSamples = LightTree::kMostAtOnce;
@@ -172,6 +178,12 @@ class LightSet {
                              const Wavelengths& wavelengths) const;
     Spectrum environment_radiance(Vec3f direction, float time,
                                   const Wavelengths& wavelengths) const;
+    /// environment_radiance() and pdf_environment() in one look-up. There must be an environment.
+    struct SkySeen {
+        Spectrum radiance;
+        float pdf;
+    };
+    SkySeen look_at_environment(Vec3f direction, Vec3f position, float time, const Wavelengths& wavelengths) const;
     SphereLight sphere_at(std::uint32_t sphere, float time) const {
         return sphere_light_at(spheres_[sphere], time);
     }
@@ -229,7 +241,7 @@ class LightSet {
     float local_probability(Vec3f position, std::size_t light) const;
 
     std::vector<Light> lights_;
-    std::optional<Environment> environment_;
+    std::optional<Environment> environment_, sampled_;   // sampled_: the same light, with SkyDensity
     LightMotion motion_;
     LightProfiles profiles_;
     std::vector<const Keyed<Light>*> keys_;  // per light, pointers into motion_; empty: no light changes

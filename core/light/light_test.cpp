@@ -331,6 +331,23 @@ TEST_CASE("the sum of many lights and a sky is the sum of each") {
     CHECK(illuminance_by_several(set, {0, 0, 0}, {0, 1, 0}, 100000) == doctest::Approx(expected).epsilon(0.01));
 }
 
+TEST_CASE("a sample of a sky's picture has an estimate, without colour; the picture is read later") {
+    const EnvironmentImage sky{2, 1, {{4, 1, 0}, {0, 1, 2}}};
+    const LightSet set({}, Environment::image(sky, 1, {}));
+    for (int i = 0; i < 100; ++i) {
+        const auto s = set.sample(0.5f, uniform_2d(i), {}, 0, rgb_lanes());
+        REQUIRE(s);
+        CHECK(s->uneven);
+        CHECK(s->light == LightSet::kEnvironment);
+        CHECK(s->radiance.min() > 0);
+        CHECK(s->radiance[0] == s->radiance[2]);
+        const auto seen = set.look_at_environment(s->wi, {}, 0, rgb_lanes());
+        CHECK(seen.radiance[0] == set.environment_radiance(s->wi, 0, rgb_lanes())[0]);
+        CHECK(seen.pdf == set.pdf_environment(s->wi, {}, 0));
+        CHECK(seen.pdf == doctest::Approx(s->pdf).epsilon(1e-3));
+    }
+}
+
 TEST_CASE("an even sky is left to the BSDF") {
     const LightSet sky({}, Environment::constant({1, 1, 1}));
     CHECK(sky.empty());

@@ -33,7 +33,7 @@ Pair irradiance(const Scene& scene, Vec3f position, Vec3f normal, int n = 40000)
     Pair sum{0, 0};
     for (int i = 0; i < n; ++i) {
         const Vec2f u{float(hash_uniform(1, i)), float(hash_uniform(2, i))};
-        const auto s = scene.sample_light(float(hash_uniform(3, i)), u, position, 0, wl);
+        const auto s = sample_light(scene, float(hash_uniform(3, i)), u, position, wl);
         if (s && !occluded(scene, position, s->wi, s->distance)) {
             sum.lights +=
                 s->radiance[0] * std::max(0.f, dot(normal, s->wi)) / s->pdf / unit / n;
@@ -170,7 +170,7 @@ TEST_CASE("sample().pdf is what pdf_triangle says of the hit in that direction")
         const Vec2f u{float(hash_uniform(1, i)), float(hash_uniform(2, i))};
         const Vec3f p = test_direction(i);
         const auto s =
-            scene->sample_light(float(hash_uniform(3, i)), u, p, 0, test_wavelengths());
+            sample_light(*scene, float(hash_uniform(3, i)), u, p, test_wavelengths());
         if (!s || s->light < 0 || occluded(*scene, p, s->wi, s->distance))
             continue;
         const auto hit = scene->intersect(test_ray(p, s->wi));
@@ -199,8 +199,7 @@ TEST_CASE("an even light needs no second look; a texture or a veil does") {
         const auto scene = Scene::build(d);
         for (int i = 0; i < 1000; ++i) {
             const Vec2f u{float(hash_uniform(1, i)), float(hash_uniform(2, i))};
-            const auto s = scene->sample_light(float(hash_uniform(3, i)), u, {3, 0, 0}, 0,
-                                               test_wavelengths());
+            const auto s = sample_light(*scene, float(hash_uniform(3, i)), u, {3, 0, 0}, test_wavelengths());
             if (!s) continue;
             const float alpha = material.alpha_mode == GltfMaterial::AlphaMode::opaque
                                     ? 1.f

@@ -61,7 +61,7 @@ Count count_hidden(const SceneDescription& d, const Place& place, float reach, b
         if (!found || found->surface.instance != 0) continue;
         const SurfaceHit& hit = found->surface;
         const Vec2f u{float(hash_uniform(3, i)), float(hash_uniform(4, i))};
-        const auto light = scene->sample_light(float(hash_uniform(5, i)), u, hit.position, 0, wavelengths);
+        const auto light = scene->lights().sample(float(hash_uniform(5, i)), u, hit.position, 0, wavelengths);
         if (!light || !(dot(hit.ng, light->wi) > 0)) continue;
         Ray ray = ray_to_light(hit, *light, 0);
         if (!aimed) {

@@ -181,18 +181,15 @@ class Scene {
         return shade(material, textures(), hit, wavelengths);
     }
     const LightSet& lights() const { return lights_; }
-    /// Light sampling including textured emission (see LightSample::uneven).
-    std::optional<LightSample> sample_light(float u_select, Vec2f u, Vec3f position,
-                                            float time,
-                                            const Wavelengths& wavelengths) const;
-
+    /// Radiance of a light sample, with textures and the picture of the sky (LightSample::uneven).
+    Spectrum radiance(const LightSample& sample, float time, const Wavelengths& wavelengths) const {
+        return sample.uneven ? uneven_radiance(sample, time, wavelengths) : sample.radiance;
+    }
     /// Profile factor on the emission of a hit toward hit.wo.
     Rgb shaping(const Material& material, const SurfaceHit& hit) const {
         if (material.profile < 0) return {1, 1, 1};
         return profile_at(material.profile, hit.instance, hit.time, hit.wo);
     }
-    void resolve(LightSample& sample, float time, const Wavelengths& wavelengths) const;
-
     /// Mean emission (cd/m2) that rays find at a point of an emitter in the direction `toward` (unit). `width` (m):
     /// width of the ray cone at the point.
     Rgb emission(const EmissionPoint& point, Vec3f toward, float time, float width = 0) const;
@@ -231,6 +228,7 @@ class Scene {
     Bounds bounds_of(std::uint32_t instance) const;
     Rgb triangle_emission(std::size_t light, Vec2f barycentric, Vec3f toward, float time,
                           float width = 0) const;
+    Spectrum uneven_radiance(const LightSample& sample, float time, const Wavelengths& wavelengths) const;
     Rgb profile_at(std::int32_t profile, std::uint32_t instance, float time, Vec3f away) const;
     std::optional<float> peak_of(std::int32_t profile) const;
     LightProfiles light_profiles() const;

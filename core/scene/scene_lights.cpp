@@ -41,8 +41,10 @@ void Scene::build_lights() {
         if (records_[i].moves())
             bound_moving_triangles(records_[i], mesh, lights, first, motion);
     }
-    lights_ = LightSet(std::move(lights), description_.environment,
-                       description_.light_choice, std::move(motion), light_profiles());
+    // Vertices in media draw few directions by their phase function, and rely on light sampling.
+    const SkyDensity sky = has_media_ ? SkyDensity::luminance : SkyDensity::compensated;
+    lights_ = LightSet(std::move(lights), description_.environment, description_.light_choice, std::move(motion),
+                       light_profiles(), sky);
 }
 
 /// Largest factor of a profile.
@@ -65,18 +67,9 @@ Rgb Scene::profile_at(std::int32_t profile, std::uint32_t instance, float time, 
     return description_.profiles[std::size_t(profile)]->at(axes.local(away));
 }
 
-std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f position,
-                                               float time,
-                                               const Wavelengths& wavelengths) const {
-    auto sample = lights_.sample(u_select, u, position, time, wavelengths);
-    if (!sample || !sample->uneven) return sample;
-    resolve(*sample, time, wavelengths);
-    return sample;
-}
-
-void Scene::resolve(LightSample& sample, float time, const Wavelengths& wavelengths) const {
-    const Rgb rgb = triangle_emission(sample.light, sample.barycentric, -sample.wi, time);
-    sample.radiance = wavelengths.emission(rgb);
+Spectrum Scene::uneven_radiance(const LightSample& sample, float time, const Wavelengths& wavelengths) const {
+    if (sample.light == LightSet::kEnvironment) return lights_.environment_radiance(sample.wi, time, wavelengths);
+    return wavelengths.emission(triangle_emission(sample.light, sample.barycentric, -sample.wi, time));
 }
 
 Rgb Scene::triangle_emission(std::size_t index, Vec2f barycentric, Vec3f toward, float time,

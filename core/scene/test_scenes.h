@@ -29,6 +29,14 @@ inline bool occluded(const Scene& scene, Vec3f from, Vec3f direction, float dist
     return scene.visibility(ray, false, {}, wavelengths).is_black();
 }
 
+/// A light sample with its radiance from textures.
+inline std::optional<LightSample> sample_light(const Scene& scene, float u_select, Vec2f u, Vec3f position,
+                                               const Wavelengths& wavelengths) {
+    auto sample = scene.lights().sample(u_select, u, position, 0, wavelengths);
+    if (sample) sample->radiance = scene.radiance(*sample, 0, wavelengths);
+    return sample;
+}
+
 /// Adds an instance of a mesh without a transform, with a new material.
 inline void add(SceneDescription& d, Mesh mesh, Material material) {
     const auto i = std::uint32_t(d.meshes.size());

@@ -30,12 +30,15 @@ Spectrum sky_emission(const PathState& path) {
     const LightSet& lights = path.scene.lights();
     if (!lights.has_environment()) return walk.throughput * Spectrum(0.f);
     const Vec3f direction = walk.ray.direction;
-    const float pdf = walk.last.delta ? 0 : lights.pdf_environment(direction, walk.last.position, walk.ray.time);
+    const float time = walk.ray.time;
+    const Wavelengths& wavelengths = path.wavelengths;
+    const auto [radiance, pdf] =
+        walk.last.delta ? LightSet::SkySeen{lights.environment_radiance(direction, time, wavelengths), 0}
+                        : lights.look_at_environment(direction, walk.last.position, time, wavelengths);
     const float camera_weight =
         walk.light_mis.off() ? 1
                              : walk.light_mis.weight_of_sky(met(walk, std::numeric_limits<float>::infinity(), pdf));
-    return walk.throughput * (lights.environment_radiance(direction, walk.ray.time, path.wavelengths) *
-                              (camera_weight * bsdf_weight(path, pdf)));
+    return walk.throughput * (radiance * (camera_weight * bsdf_weight(path, pdf)));
 }
 
 Spectrum sphere_emission(const PathState& path, std::uint32_t sphere, const SurfaceHit& hit) {

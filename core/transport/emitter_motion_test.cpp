@@ -143,7 +143,7 @@ TEST_CASE("an area light that spins, and shines to one side") {
         const Wavelengths wl = Wavelengths::sample(0.4f);
         int found = 0;
         for (int i = 0; i < 1000; ++i)
-            found += scene->sample_light(0.5f, {0.3f, 0.4f}, {}, (float(i) + 0.5f) / 1000, wl).has_value();
+            found += scene->lights().sample(0.5f, {0.3f, 0.4f}, {}, (float(i) + 0.5f) / 1000, wl).has_value();
         CHECK(found > 300);
     }
 }

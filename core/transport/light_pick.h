@@ -5,6 +5,7 @@
 // The samples x_i, i < n, have density p; g is the unshadowed contribution times the MIS weight w. Sample i is picked
 // in proportion to g_i / p_i and contributes (f L V w)(x) / g(x) * sum g_i / p_i / n. Visibility and the sum remain as
 // sources of noise. Source: Talbot, Cline and Egbert 2005, Importance Resampling for Global Illumination, EGSR.
+// The radiance in g is an estimate for textured lamps and skies (LightSample::uneven).
 // w is the power heuristic (Veach 1997, 9.2.4) with the density n p for n candidates. Any w is unbiased as long as
 // BSDF sampling uses the same.
 #pragma once
@@ -71,9 +72,7 @@ std::optional<DirectLight> LightPick::pick(const Scene& scene, const SurfaceHit&
     for (int i = 0; i < candidates && (chosen < 0 || rest >= 0); ++i)
         if (all.worth_[i] > 0) chosen = i, rest -= all.worth_[i];
     const float share = sum / (float(candidates) * all.worth_[chosen]);
-    DirectLight found{all.lights_[chosen], all.f_[chosen], all.weight_[chosen] * share};
-    if (found.light.uneven) scene.resolve(found.light, hit.time, wavelengths);
-    return found;
+    return DirectLight{all.lights_[chosen], all.f_[chosen], all.weight_[chosen] * share};
 }
 
 }  // namespace dg

@@ -287,7 +287,7 @@ class Path : public PathState {
             if (picked) gather_direct(bsdf, hit, *picked, walk.throughput, mis_vertex);
             return;
         }
-        const auto light = scene.sample_light(u.select, u.light, hit.position, hit.time, wavelengths);
+        const auto light = scene.lights().sample(u.select, u.light, hit.position, hit.time, wavelengths);
         if (!light || light->pdf <= 0) return;
         if (by_bsdf && !light->delta) return;
         const Evaluation f = bsdf.evaluate_with_pdf(view, light->wi);
@@ -296,7 +296,7 @@ class Path : public PathState {
         gather_direct(bsdf, hit, {*light, f, share / light->pdf}, walk.throughput, mis_vertex);
     }
 
-    /// Adds a light sample times its visibility.
+    /// Adds a light sample times its visibility. Only visible lights read their textures.
     template <Scatters B>
     void gather_direct(const B& bsdf, const SurfaceHit& hit, const DirectLight& direct,
                        Spectrum throughput, MisVertex* mis_vertex) {
@@ -311,7 +311,8 @@ class Path : public PathState {
             mis_vertex ? walk.light_mis.path_mis->weight_of_sample(scene, *mis_vertex, light, wavelengths) : 1;
         const float weight = direct.weight * camera_weight;
         const auto reflected = [&](Spectrum visible) {
-            return throughput * (direct.f.f_cos * (light.radiance * visible * weight));
+            const Spectrum radiance = scene.radiance(light, walk.ray.time, wavelengths);
+            return throughput * (direct.f.f_cos * (radiance * visible * weight));
         };
         worlds_.gather_direct(*this, bsdf, hit.wo, direct, visibility, reflected);
     }

@@ -27,7 +27,6 @@ LampSample LampSampler::sample(float light_samples_per_collision, const Random& 
     const SurfaceHit at = in_medium(ray, lamp.t);
     auto light = lights.sample_one(choice->light, u.place, at.position, at.time, path_.wavelengths);
     if (!light || !(light->pdf > 0) || !(density > 0)) return lamp;
-    if (light->uneven) path_.scene.resolve(*light, at.time, path_.wavelengths);
     lamp.direct.light = *light;
     const Evaluation f = lamp.direct.f = PhaseBsdf{phase_}.evaluate_with_pdf(at.wo, light->wi);
     lamp.scattering = segment_.medium().scattering * segment_.transmittance_to(t);
