@@ -3,9 +3,9 @@
     python bench/start.py --json [--runs 15] [--scene night_table.glb]
 
 The scene is that of ``scenes/night_table.py`` unless --scene names another; pictures have 96 x 64
-pixels of one sample. CPU seconds are user and system time of a process with all its threads, from
-its start to its end, at their least over runs that take turns. Modules are those in ``sys.modules``
-at the end.
+pixels of one sample, and those of coats show a square alone. CPU seconds are user and system time
+of a process with all its threads, from its start to its end, at their least over runs that take
+turns. Modules are those in ``sys.modules`` at the end.
 """
 
 from __future__ import annotations
@@ -19,7 +19,20 @@ import tempfile
 from pathlib import Path
 
 MAIN = "import sys; from daguerre.cli import main; main()"
-COUNT = "; print(len(sys.modules), file=sys.stderr)"
+COUNT = "\nprint(len(sys.modules), file=sys.stderr)"
+#: A square under a white sky, with a coat of a roughness over a base, of facets of a distribution.
+COATED = """
+import sys
+import daguerre as dg
+corners = [(-1, -1, -2), (1, -1, -2), (1, 1, -2), (-1, 1, -2)]
+facets = {"alpha": float(sys.argv[1]), "distribution": sys.argv[2]}
+base = dg.Conductor(**facets) if sys.argv[3] == "metal" else dg.Diffuse()
+scene = dg.Scene()
+square = scene.add_mesh(corners, [(0, 1, 2), (0, 2, 3)])
+scene.add_instance(square, dg.Coated(base, **facets))
+scene.set_environment(color=(1, 1, 1))
+dg.render(scene, dg.Camera(focal_length=35), resolution=(96, 64), spp=1)
+"""
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 #: Python may keep what it compiles, as it does for a user.
 SURROUNDINGS = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
@@ -39,6 +52,11 @@ def programs(scene: str) -> dict[str, list[str]]:
         "a small .exr": [MAIN, *small, "a.exr"],
         "a small .png, double Gauss": [MAIN, *small, "b.png", *lens],
         "a small .exr, double Gauss": [MAIN, *small, "b.exr", *lens],
+        "smooth coat": [COATED, "0", "ggx", "matte"],
+        "rough coat, GGX": [COATED, "0.2", "ggx", "matte"],
+        "rough coat, Beckmann": [COATED, "0.2", "beckmann", "matte"],
+        "rough coat on metal, GGX": [COATED, "0.2", "ggx", "metal"],
+        "rough coat on metal, Beckmann": [COATED, "0.2", "beckmann", "metal"],
     }
 
 
@@ -92,7 +110,7 @@ def main() -> None:
         print(json.dumps(found))
         return
     for name, one in found.items():
-        print(f"{name:28} {one['cpu_s']:6.3f} CPU s {one['modules']:5} modules")
+        print(f"{name:30} {one['cpu_s']:6.3f} CPU s {one['modules']:5} modules")
 
 
 if __name__ == "__main__":

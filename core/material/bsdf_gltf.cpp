@@ -1,6 +1,8 @@
 // bsdf_gltf.cpp -- set-up and sampling of the glTF material.
 #include "material/bsdf_gltf.h"
 
+#include "material/baked.h"
+
 namespace dg {
 namespace {
 
@@ -49,7 +51,7 @@ GltfBsdf::GltfBsdf(const GltfSurface& s, Vec3f shading, Vec3f geometric)
       ng(geometric),
       alpha(s.roughness * s.roughness),
       smooth(alpha < kSmoothAlpha) {
-    row = smooth ? GgxAlbedo::smooth_row() : GgxAlbedo::instance().row(s.roughness);
+    row = smooth ? GgxAlbedo::smooth_row() : baked::ggx.row(s.roughness);
 
     f0_ior = normal_reflectance(s.ior);  // 1 for ior 0 (KHR_materials_ior)
     f0 = clamped(s.specular_color * f0_ior, 0, 1) * s.specular;
@@ -143,7 +145,7 @@ void GltfBsdf::stretch(const GltfSurface& s) {
 }
 
 GgxAlbedo::Row GltfBsdf::stretched_row(Vec3f w) const {
-    return GgxAlbedo::instance().row(std::sqrt(stretched->alpha_toward(w)));
+    return baked::ggx.row(std::sqrt(stretched->alpha_toward(w)));
 }
 
 Facet GltfBsdf::reflecting(const Facing& side, Vec3f wo, Vec3f wi, float cos_i) const {

@@ -1,6 +1,8 @@
 // bsdf_layered.cpp -- evaluation and sampling of coat, sheen and base together.
 #include "material/bsdf_layered.h"
 
+#include "material/baked.h"
+
 namespace dg {
 namespace {
 
@@ -21,7 +23,7 @@ Sheen::Sheen(Spectrum color, float largest, float roughness)
     : color(color),
       largest(std::min(largest, 1.f)),
       alpha(charlie_alpha(roughness)),
-      row(CharlieAlbedo::instance().row(roughness)) {}
+      row(baked::charlie.row(roughness)) {}
 
 Spectrum Sheen::evaluate(Vec3f ns, Vec3f wo, Vec3f wi, float cos_o, float cos_i) const {
     const float lambda = charlie_lambda(cos_o, alpha) + charlie_lambda(cos_i, alpha);

@@ -1,16 +1,8 @@
-// charlie.cpp -- masking and albedo table of the sheen.
+// charlie.cpp -- masking of the sheen, and rows of its table.
 #include "material/charlie.h"
 
 namespace dg {
 namespace {
-
-constexpr int kRings = 48, kTurns = 24;
-
-/// Roughness of a table row, uniform between the smallest roughness and 1.
-float roughness_of(int row) {
-    constexpr float kStep = (1 - kLeastSheenRoughness) / (CharlieAlbedo::kRoughnesses - 1);
-    return kLeastSheenRoughness + static_cast<float>(row) * kStep;
-}
 
 /// The fit l(x) of the paper, table 1: blended by (1 - alpha)^2.
 float fit(float x, float alpha) {
@@ -24,24 +16,6 @@ float fit(float x, float alpha) {
     return a / (1 + b * std::pow(x, c)) + d * x + e;
 }
 
-/// Integral of f cos over the hemisphere, by the midpoint rule in sqrt(cos) and in azimuth over half a turn.
-float integrate(float cos_o, float alpha, const float (&lambda)[kRings]) {
-    const Vec3f n{0, 0, 1}, wo{std::sqrt(std::max(0.f, 1 - cos_o * cos_o)), 0, cos_o};
-    const float lambda_o = charlie_lambda(cos_o, alpha);
-    double sum = 0;
-    for (int i = 0; i < kRings; ++i) {
-        const float x = (static_cast<float>(i) + 0.5f) / kRings, cos_i = x * x;
-        const float r = std::sqrt(1 - cos_i * cos_i);
-        const float masking = x / ((1 + lambda_o + lambda[i]) * 4 * cos_o);
-        for (int j = 0; j < kTurns; ++j) {
-            const float phi = kPi * (static_cast<float>(j) + 0.5f) / kTurns;
-            const Vec3f wi{r * std::cos(phi), r * std::sin(phi), cos_i};
-            sum += charlie_d(n, wo + wi, alpha) * masking;
-        }
-    }
-    return static_cast<float>(sum * 2 * 2 * kPiD / (kRings * kTurns));
-}
-
 }  // namespace
 
 float charlie_lambda(float cos_angle, float alpha) {
@@ -50,32 +24,12 @@ float charlie_lambda(float cos_angle, float alpha) {
                     : std::exp(2 * fit(0.5f, alpha) - fit(1 - c, alpha));
 }
 
-CharlieAlbedo::CharlieAlbedo() {
-    for (int r = 0; r < kRoughnesses; ++r) {
-        const float alpha = charlie_alpha(roughness_of(r));
-        float lambda[kRings];
-        for (int i = 0; i < kRings; ++i) {
-            const float x = (static_cast<float>(i) + 0.5f) / kRings;
-            lambda[i] = charlie_lambda(x * x, alpha);
-        }
-        for (int i = 0; i < kAngles; ++i) {
-            const float x = static_cast<float>(i) / (kAngles - 1);
-            table_[r][i] = integrate(std::max(x * x, 1e-4f), alpha, lambda);
-        }
-    }
-}
-
-const CharlieAlbedo& CharlieAlbedo::instance() {
-    static const CharlieAlbedo table;
-    return table;
-}
-
 CharlieAlbedo::Row CharlieAlbedo::row(float roughness) const {
     const float r = std::clamp(roughness, kLeastSheenRoughness, 1.f);
     const float x = (r - kLeastSheenRoughness) / (1 - kLeastSheenRoughness) *
                     (kRoughnesses - 1);
     const int i = std::min(static_cast<int>(x), kRoughnesses - 2);
-    return {table_[i], table_[i + 1], x - static_cast<float>(i)};
+    return {values[i], values[i + 1], x - static_cast<float>(i)};
 }
 
 }  // namespace dg

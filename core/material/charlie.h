@@ -29,13 +29,11 @@ inline float charlie_d(Vec3f n, Vec3f h, float alpha) {
 /// Lambda of the masking (Estevez and Kulla, section 3).
 float charlie_lambda(float cos_angle, float alpha);
 
-/// Directional albedo of f = D V, before the limit of 1.
-class CharlieAlbedo {
-  public:
+/// Directional albedo of f = D V, before the limit of 1. The one table is baked::charlie (baked.h).
+struct CharlieAlbedo {
     static constexpr int kAngles = 32, kRoughnesses = 32;  // uniform in sqrt(cos)
 
-    /// Computed on the first call.
-    static const CharlieAlbedo& instance();
+    float values[kRoughnesses][kAngles];
 
     struct Row {
         const float *low = nullptr, *high = nullptr;
@@ -51,10 +49,6 @@ class CharlieAlbedo {
         }
     };
     Row row(float roughness) const;
-
-  private:
-    CharlieAlbedo();
-    float table_[kRoughnesses][kAngles];
 };
 
 }  // namespace dg

@@ -14,13 +14,12 @@ namespace dg {
 /// A, B, b and 1 in the four lanes, to be weighted by four coefficients at once.
 using LobeAlbedo = Spectrum;
 
-class GgxAlbedo {
-  public:
+/// The one table is baked::ggx (baked.h).
+struct GgxAlbedo {
     static constexpr int kAngles = 32,
                          kRoughnesses = 24;  // uniform in sqrt(cos) and in sqrt(alpha)
 
-    /// Computed on the first call.
-    static const GgxAlbedo& instance();
+    LobeAlbedo values[kRoughnesses][kAngles], means[kRoughnesses];
 
     /// Interpolated table row of a roughness; smooth surfaces use Schlick's curve itself.
     struct Row {
@@ -43,15 +42,7 @@ class GgxAlbedo {
     };
     static Row smooth_row();
     Row row(float roughness) const;
-
-  private:
-    GgxAlbedo();
-    LobeAlbedo table_[kRoughnesses][kAngles];
-    LobeAlbedo mean_[kRoughnesses];
 };
-
-/// Integral of the interpolant of GgxAlbedo::kAngles values over 2 cos dcos.
-LobeAlbedo cosine_mean(const LobeAlbedo* values);
 
 /// Weighted sum of the four lanes.
 inline float weigh(LobeAlbedo albedo, Spectrum coefficients) {

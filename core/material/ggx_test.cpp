@@ -4,9 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include "material/baked.h"
 #include "material/bsdf_check.h"
 #include "material/fresnel.h"
-#include "material/ggx_albedo.h"
 
 namespace dg {
 
@@ -91,7 +91,7 @@ TEST_CASE("Fresnel: numbers of the textbook") {
 
 TEST_CASE("albedo tables equal the albedo by sampling, between the nodes too") {
     for (float roughness : {0.05f, 0.2f, 0.37f, 0.71f, 1.f}) {
-        const GgxAlbedo::Row row = GgxAlbedo::instance().row(roughness);
+        const GgxAlbedo::Row row = baked::ggx.row(roughness);
         const float alpha2 = roughness * roughness * roughness * roughness;
         for (float cos_o : {0.03f, 0.13f, 0.43f, 0.77f, 1.f}) {
             const Vec3f n{0, 0, 1}, wo{std::sqrt(1 - cos_o * cos_o), 0, cos_o};
@@ -119,7 +119,7 @@ TEST_CASE("albedo tables equal the albedo by sampling, between the nodes too") {
 
 TEST_CASE("the mean of a table row is the integral of its interpolant") {
     for (float roughness : {0.1f, 0.5f, 0.93f}) {
-        const GgxAlbedo::Row row = GgxAlbedo::instance().row(roughness);
+        const GgxAlbedo::Row row = baked::ggx.row(roughness);
         double sum[3] = {};
         constexpr int kCount = 20000;
         for (int i = 0; i < kCount; ++i) {

@@ -25,7 +25,6 @@ struct GlassLobes {
 /// (StretchedGgx::alpha_toward).
 class GlassAlbedo {
   public:
-    /// The first use of a distribution computes its table (0.3 s).
     GlassAlbedo(float n, const Facets& facets);
 
     GlassLobes toward(Vec3f w, float cosine) const;

@@ -1,33 +1,14 @@
 #include "material/indexed_albedo.h"
 
 namespace dg {
-namespace {
-
-constexpr float kLargestRatio = (IndexedAlbedo::kLargestIndex - 1) / (IndexedAlbedo::kLargestIndex + 1);
-
-}  // namespace
-
-IndexedAlbedo::IndexedAlbedo(Integrand integrand) : cells_(std::make_unique<Cells>()) {
-    for (int k = 0; k < kIndices; ++k) {
-        const float ratio = kLargestRatio * static_cast<float>(k) / (kIndices - 1), n = (1 + ratio) / (1 - ratio);
-        for (int r = 0; r < kRoughnesses; ++r) {
-            const float roughness = static_cast<float>(r) / (kRoughnesses - 1);
-            for (int i = 0; i < kAngles; ++i) {
-                const float x = static_cast<float>(i) / (kAngles - 1);
-                cells_->values[k][r][i] = integrand(std::max(x * x, 1e-4f), roughness * roughness, n);
-            }
-            cells_->means[k][r] = cosine_mean(cells_->values[k][r]);
-        }
-    }
-}
 
 IndexedAlbedo::Row IndexedAlbedo::row(float n, float alpha) const {
     const float ratio = std::clamp((n - 1) / (n + 1), 0.f, kLargestRatio) / kLargestRatio * (kIndices - 1);
     const float rough = std::sqrt(std::clamp(alpha, 0.f, 1.f)) * (kRoughnesses - 1);
     const int k = std::min(static_cast<int>(ratio), kIndices - 2);
     const int r = std::min(static_cast<int>(rough), kRoughnesses - 2);
-    const auto& v = cells_->values;
-    const auto& m = cells_->means;
+    const auto& v = values;
+    const auto& m = means;
     Row row{{{v[k][r], v[k][r + 1]}, {v[k + 1][r], v[k + 1][r + 1]}},
             ratio - static_cast<float>(k),
             rough - static_cast<float>(r)};

@@ -1,21 +1,16 @@
 // indexed_albedo.h -- albedo tables over index of refraction, roughness and angle.
 #pragma once
-#include <memory>
-
 #include "material/ggx_albedo.h"
 
 namespace dg {
 
 /// Table of four numbers by index, roughness and cosine, interpolated linearly in (n - 1) / (n + 1), sqrt(alpha) and
 /// sqrt(cos).
-class IndexedAlbedo {
-  public:
+struct IndexedAlbedo {
     static constexpr int kIndices = 16, kAngles = GgxAlbedo::kAngles, kRoughnesses = 16;
-    static constexpr float kLargestIndex = 10;
+    static constexpr float kLargestIndex = 10, kLargestRatio = (kLargestIndex - 1) / (kLargestIndex + 1);
 
-    /// Fills the table from a function of cosine, alpha and n.
-    using Integrand = LobeAlbedo (*)(float cosine, float alpha, float n);
-    explicit IndexedAlbedo(Integrand integrand);
+    LobeAlbedo values[kIndices][kRoughnesses][kAngles], means[kIndices][kRoughnesses];
 
     /// Interpolated table row of an index and a roughness.
     struct Row {
@@ -27,12 +22,6 @@ class IndexedAlbedo {
     };
     /// Requires n >= 1.
     Row row(float n, float alpha) const;
-
-  private:
-    struct Cells {
-        LobeAlbedo values[kIndices][kRoughnesses][kAngles], means[kIndices][kRoughnesses];
-    };
-    std::unique_ptr<Cells> cells_;
 };
 
 }  // namespace dg

@@ -17,8 +17,8 @@ struct Spectrum {
     Lanes v{};
 
     Spectrum() = default;
-    Spectrum(float s) : v{s, s, s, s} {}  // NOLINT: a number is a constant spectrum
-    Spectrum(float a, float b, float c, float d) : v{a, b, c, d} {}
+    constexpr Spectrum(float s) : v{s, s, s, s} {}  // NOLINT: a number is a constant spectrum
+    constexpr Spectrum(float a, float b, float c, float d) : v{a, b, c, d} {}
     static Spectrum from(Lanes l) { Spectrum s; s.v = l; return s; }
 
     float operator[](int i) const { return v[i]; }
