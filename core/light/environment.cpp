@@ -116,7 +116,7 @@ Rgb Environment::luminance_within(Vec3f direction) const {
     return p.at(p.grid.texels(p.environment_from_world.vector(direction)));
 }
 
-Environment::Seen Environment::look_within(Vec3f direction) const {
+Environment::Lookup Environment::lookup_within(Vec3f direction) const {
     if (!picture_) return {constant_, warp_sphere_pdf()};
     const Picture& p = *picture_;
     const Vec3f d = p.environment_from_world.vector(direction);

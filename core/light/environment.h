@@ -55,11 +55,11 @@ class Environment {
         return poses_ ? pdf_posed(direction, time) : pdf_within(direction);
     }
     /// luminance() and pdf() in one look-up.
-    struct Seen {
+    struct Lookup {
         Rgb luminance;
         float pdf;
     };
-    Seen look(Vec3f direction, float time) const;
+    Lookup lookup(Vec3f direction, float time) const;
     /// Converts directions between world and picture at a time. Identity for a uniform colour.
     Vec3f to_picture(Vec3f direction, float time) const;
     Vec3f to_world(Vec3f direction, float time) const;
@@ -72,7 +72,7 @@ class Environment {
     Rgb luminance_within(Vec3f direction) const;
     Sample sample_within(Vec2f u) const;
     float pdf_within(Vec3f direction) const;
-    Seen look_within(Vec3f direction) const;
+    Lookup lookup_within(Vec3f direction) const;
     Vec3f turned(Vec3f direction, float time, float sign) const;
     Rgb luminance_posed(Vec3f direction, float time) const;
     Sample sample_posed(Vec2f u, float time) const;

@@ -53,12 +53,12 @@ float Environment::pdf_posed(Vec3f direction, float time) const {
     return pdf_within(turned_about_y(direction, -poses_->at(time).turn));
 }
 
-Environment::Seen Environment::look(Vec3f direction, float time) const {
-    if (!poses_) return look_within(direction);
+Environment::Lookup Environment::lookup(Vec3f direction, float time) const {
+    if (!poses_) return lookup_within(direction);
     const EnvironmentPose now = poses_->at(time);
-    Seen seen = look_within(turned_about_y(direction, -now.turn));
-    seen.luminance = seen.luminance * now.strength;
-    return seen;
+    Lookup found = lookup_within(turned_about_y(direction, -now.turn));
+    found.luminance = found.luminance * now.strength;
+    return found;
 }
 
 }  // namespace dg

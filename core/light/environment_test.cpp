@@ -149,7 +149,7 @@ TEST_CASE("one look finds light and density, also in a sky that turns") {
     for (const Environment& e : {still, turning, Environment::constant({1, 2, 3})})
         for (int i = 0; i < 200; ++i) {
             const auto s = e.sample({float(hash_uniform(1, i)), float(hash_uniform(2, i))}, 0.25f);
-            const Environment::Seen seen = e.look(s.direction, 0.25f);
+            const Environment::Lookup seen = e.lookup(s.direction, 0.25f);
             CHECK(seen.luminance == e.luminance(s.direction, 0.25f));
             CHECK(seen.pdf == e.pdf(s.direction, 0.25f));
             CHECK(s.luminance > 0);

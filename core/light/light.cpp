@@ -450,11 +450,11 @@ Spectrum LightSet::environment_radiance(Vec3f direction, float time,
     return wavelengths.emission(environment_->luminance(direction, time));
 }
 
-LightSet::SkySeen LightSet::look_at_environment(Vec3f direction, Vec3f position, float time,
+LightSet::SkyLookup LightSet::lookup_environment(Vec3f direction, Vec3f position, float time,
                                                 const Wavelengths& wavelengths) const {
     if (environment_pmf_ <= 0) return {environment_radiance(direction, time, wavelengths), 0};
-    const Environment::Seen seen = sampled_->look(direction, time);
-    return {wavelengths.emission(seen.luminance), infinite_probability(position) * environment_pmf_ * seen.pdf};
+    const Environment::Lookup found = sampled_->lookup(direction, time);
+    return {wavelengths.emission(found.luminance), infinite_probability(position) * environment_pmf_ * found.pdf};
 }
 
 }  // namespace dg

@@ -179,11 +179,11 @@ class LightSet {
     Spectrum environment_radiance(Vec3f direction, float time,
                                   const Wavelengths& wavelengths) const;
     /// environment_radiance() and pdf_environment() in one look-up. There must be an environment.
-    struct SkySeen {
+    struct SkyLookup {
         Spectrum radiance;
         float pdf;
     };
-    SkySeen look_at_environment(Vec3f direction, Vec3f position, float time, const Wavelengths& wavelengths) const;
+    SkyLookup lookup_environment(Vec3f direction, Vec3f position, float time, const Wavelengths& wavelengths) const;
     SphereLight sphere_at(std::uint32_t sphere, float time) const {
         return sphere_light_at(spheres_[sphere], time);
     }

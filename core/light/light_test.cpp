@@ -341,7 +341,7 @@ TEST_CASE("a sample of a sky's picture has an estimate, without colour; the pict
         CHECK(s->light == LightSet::kEnvironment);
         CHECK(s->radiance.min() > 0);
         CHECK(s->radiance[0] == s->radiance[2]);
-        const auto seen = set.look_at_environment(s->wi, {}, 0, rgb_lanes());
+        const auto seen = set.lookup_environment(s->wi, {}, 0, rgb_lanes());
         CHECK(seen.radiance[0] == set.environment_radiance(s->wi, 0, rgb_lanes())[0]);
         CHECK(seen.pdf == set.pdf_environment(s->wi, {}, 0));
         CHECK(seen.pdf == doctest::Approx(s->pdf).epsilon(1e-3));

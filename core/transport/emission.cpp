@@ -33,8 +33,8 @@ Spectrum sky_emission(const PathState& path) {
     const float time = walk.ray.time;
     const Wavelengths& wavelengths = path.wavelengths;
     const auto [radiance, pdf] =
-        walk.last.delta ? LightSet::SkySeen{lights.environment_radiance(direction, time, wavelengths), 0}
-                        : lights.look_at_environment(direction, walk.last.position, time, wavelengths);
+        walk.last.delta ? LightSet::SkyLookup{lights.environment_radiance(direction, time, wavelengths), 0}
+                        : lights.lookup_environment(direction, walk.last.position, time, wavelengths);
     const float camera_weight =
         walk.light_mis.off() ? 1
                              : walk.light_mis.weight_of_sky(met(walk, std::numeric_limits<float>::infinity(), pdf));
