@@ -18,7 +18,8 @@ middle pixel. Figures are medians over the seeds. A score is CPU seconds x error
 Daguerre's score over the better of Mitsuba's two samplers, and below 1 Daguerre is faster.
 ``us_per_sample`` and ``error_of_one_sample`` are the price and the error apart. Set-up and
 compilation do not count; their CPU seconds stand beside. Renderers take turns, seed by seed, each
-in a process of its own. Converged pictures are kept in ``--references``.
+in a process of its own. Converged pictures are kept in ``--references``; each room's answer also
+goes to the error stream as soon as it is there.
 
 Pictures of two scenes compare nothing: where Mitsuba's picture is not Daguerre's, within 3 % in
 its mean and within 5 % in nine of ten of its blocks, beside their noise, the bench ends with an
@@ -246,6 +247,7 @@ def main() -> None:
         for name in chosen:
             room = public.get(name) or made_room(name, options, Path(folder), len(names) > 1)
             out[name] = measure(room, names, renderers, options)
+            print(f"rooms: {json.dumps({name: out[name]})}", file=sys.stderr, flush=True)
     print(json.dumps(out, indent=1))
 
 

@@ -43,7 +43,7 @@ def row(pictures: list[Picture], said: list[Facts], true: Picture, spp: int, noi
     made: Facts = {
         "renderer": said[0]["renderer"],
         "seeds": len(pictures),
-        "cpu_s": cpu,
+        "cpu_s": round(cpu, 3),
         "us_per_sample": round(cpu / samples * 1e6, 3),
         "error": _short(error),
         "error_of_one_sample": _short({name: value * spp for name, value in error.items()}),

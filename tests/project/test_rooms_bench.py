@@ -77,6 +77,7 @@ def test_rows_of_both_samplers(tmp_path: Path) -> None:
     done = run(tmp_path, "--rooms", "living-room", **stand_in(tmp_path))
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)["living-room"]
+    assert done.stderr.startswith('rooms: {"living-room"')  # a long run that breaks keeps its rooms
     rows = ("daguerre", "mitsuba_independent", "mitsuba_multijitter")
     assert set(found) == {*rows, "ratio", "same_picture"}
     for name in rows:
