@@ -36,11 +36,7 @@ struct SurfaceHit {
     float outside_ior = 1;   // index outside the surface, for the hero; other than 1 within another solid
     float error =
         0;  // m; offset of rays that leave the surface (scaled to the magnitude of position)
-    float barycentric[2];  // of the second and third vertex; set if smooth, like on_mesh
-    float on_mesh[3];      // m; position before it was moved to the smooth surface
-
-    /// The point that the ray has hit.
-    Vec3f met() const { return smooth ? Vec3f{on_mesh[0], on_mesh[1], on_mesh[2]} : position; }
+    float barycentric[2];  // of the second and third vertex; set if smooth
 };
 
 /// Replaces both normals by the normal of the smooth surface. Where that faces away from wo, by the nearest that does not.

@@ -210,10 +210,7 @@ void surface_at(const InstanceRecord& r, const Placement& place, std::uint32_t p
             unit_or(to_float(place.normal_matrix.vector(to_double(unit_or(n, {})))), hit.ng);
         if (dot(hit.ns, hit.ng) < 0) hit.ns = -hit.ns;
         hit.smooth = r.smooth && !(na == nb && nb == nc);
-        if (hit.smooth) {
-            hit.barycentric[0] = u, hit.barycentric[1] = v;
-            for (int i = 0; i < 3; ++i) hit.on_mesh[i] = hit.position[i];
-        }
+        if (hit.smooth) hit.barycentric[0] = u, hit.barycentric[1] = v;
     }
     if (r.uv[0] || r.uv[1] || r.colors) interpolate_attributes(r, primitive, u, v, hit);
     if (r.needs_frame) set_tangent(r, place, t, w, u, v, hit);

@@ -180,6 +180,8 @@ class Scene {
         if (hit.smooth) lift(hit);
         return shade(material, textures(), hit, wavelengths);
     }
+    /// The point that the ray has hit, also after shade_smooth().
+    Vec3f met(const SurfaceHit& hit) const;
     const LightSet& lights() const { return lights_; }
     /// Radiance of a light sample, with textures and the picture of the sky (LightSample::uneven).
     Spectrum radiance(const LightSample& sample, float time, const Wavelengths& wavelengths) const {

@@ -45,4 +45,10 @@ void Scene::lift(SurfaceHit& hit) const {
     use_smooth_normal(hit);
 }
 
+Vec3f Scene::met(const SurfaceHit& hit) const {
+    if (!hit.smooth) return hit.position;
+    const auto [u, v] = hit.barycentric;
+    return to_float(point_at(records_[hit.instance], hit.primitive, u, v, hit.time));
+}
+
 }  // namespace dg

@@ -6,7 +6,7 @@ void note_surface(PathState& path, const Material& material, const SurfaceHit& h
     FirstHit& first = *path.first_hit;
     if (first.found && smooth) return;
     const Rgb color = albedo(material, path.scene.textures(), hit);
-    if (!first.found) first = {true, hit.met(), hit.ns, color, hit.instance, {}, {}};
+    if (!first.found) first = {true, path.scene.met(hit), hit.ns, color, hit.instance, {}, {}};
     if (smooth) return;
     const float share = path.walk.throughput.average();
     first.guide_albedo = first.guide_albedo + color * share;
