@@ -18,26 +18,31 @@ struct Bounds {
         constexpr float kInfinity = std::numeric_limits<float>::infinity();
         return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
     }
-    void hold(Vec3f p) {
-        for (int k = 0; k < 3; ++k) min[k] = std::min(min[k], p[k]), max[k] = std::max(max[k], p[k]);
-    }
+    void hold(Vec3f p) { hold(p, p); }
+    void hold(const Bounds& other) { hold(other.min, other.max); }
     bool holds(const Bounds& other) const {
         for (int k = 0; k < 3; ++k)
             if (other.min[k] < min[k] || other.max[k] > max[k]) return false;
         return true;
     }
+    bool is_empty() const { return !(min.x <= max.x); }
     bool meets(Vec3f low, Vec3f high) const {
         return low.x <= max.x && low.y <= max.y && low.z <= max.z && high.x >= min.x && high.y >= min.y &&
                high.z >= min.z;
     }
     bool meets(const Bounds& other) const { return meets(other.min, other.max); }
+
+  private:
+    void hold(Vec3f low, Vec3f high) {
+        for (int k = 0; k < 3; ++k) min[k] = std::min(min[k], low[k]), max[k] = std::max(max[k], high[k]);
+    }
 };
 
 /// Box of items with `bounds`.
 template <typename Item>
 Bounds bounds_of(std::span<Item> items) {
     Bounds all = Bounds::none();
-    for (const Item& i : items) all.hold(i.bounds.min), all.hold(i.bounds.max);
+    for (const Item& i : items) all.hold(i.bounds);
     return all;
 }
 

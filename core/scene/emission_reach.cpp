@@ -1,5 +1,6 @@
 // emission_reach.cpp -- bounds of lit surfaces, and specular objects to aim light paths at.
 #include "material/material_needs.h"
+#include "scene/instance_bounds.h"
 #include "scene/scene.h"
 
 namespace dg {
@@ -30,11 +31,7 @@ Scene::Bounds Scene::bounds_of(std::uint32_t i) const {
         const Box box = intersector_->bounds_of_moving(i);
         return {to_float(box.min), to_float(box.max)};
     }
-    Bounds b = Bounds::none();
-    for (const Vec3f local : description_.meshes[instance.mesh].positions)
-        b.hold(instance.world_from_local.point(local));
-    const Vec3f around = reach_around(description_.meshes[instance.mesh], instance.world_from_local);
-    return {b.min - around, b.max + around};
+    return bounds_of_still(description_.meshes[instance.mesh], instance);
 }
 
 EmissionReach Scene::emission_reach() const {

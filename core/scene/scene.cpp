@@ -154,33 +154,15 @@ bool Scene::is_of_object(std::int32_t light) const {
     return triangle && !catcher(triangle->instance);
 }
 
-void Scene::hold(Vec3d point) {
-    const Vec3f p = to_float(point);
-    for (int k = 0; k < 3; ++k) {
-        bounds_.min[k] = std::min(bounds_.min[k], p[k]);
-        bounds_.max[k] = std::max(bounds_.max[k], p[k]);
-    }
-}
-
 void Scene::measure() {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    bounds_ = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    bounds_ = Bounds::none();
     for (std::uint32_t i = 0; i < description_.instances.size(); ++i) {
         const Instance& instance = description_.instances[i];
         const Mesh& mesh = description_.meshes[instance.mesh];
         triangle_count_ += mesh.triangles.size();
-        if (instance.motion && mesh.empty()) continue;
-        if (instance.motion) {
-            const Box box = intersector_->bounds_of_moving(i);
-            hold(box.min), hold(box.max);
-            continue;
-        }
-        for (Vec3f local : mesh.positions) hold(to_double(instance.world_from_local.point(local)));
-        if (mesh.curves.empty()) continue;
-        const Bounds around = bounds_of(i);
-        hold(to_double(around.min)), hold(to_double(around.max));
+        if (!instance.motion || !mesh.empty()) bounds_.hold(bounds_of(i));
     }
-    if (!(bounds_.min.x <= bounds_.max.x)) bounds_ = {};
+    if (bounds_.is_empty()) bounds_ = {};
 }
 
 /// Stochastic alpha: the ray passes with probability 1 - opacity.

@@ -255,7 +255,6 @@ class Scene {
     template <class Around>
     Spectrum through_crossings(const Ray& ray, Crossings& crossings, bool delta, Around around, float distance,
                                const Wavelengths& wavelengths) const;
-    void hold(Vec3d point);
     MaterialAt material_at(std::uint32_t material, float time) const {
         if (const MaterialChange* change = change_of(material))
             return MaterialAt(change->keys, time);

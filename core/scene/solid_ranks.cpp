@@ -3,7 +3,6 @@
 #include <tuple>
 
 #include "geometry/triangle_distance.h"
-#include "motion/moving_bounds.h"
 #include "scene/scene.h"
 
 namespace dg {
@@ -158,23 +157,6 @@ Overlap described(const Nested& a, const Nested& b) {
 }
 
 }  // namespace
-
-Bounds bounds_over_time(const SceneDescription& scene, const Instance& instance) {
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    Bounds own = Bounds::none(), all = own;
-    if (mesh.positions.empty()) return all;
-    for (const Vec3f p : mesh.positions) own.hold(p);
-    std::array<Vec3f, 8> corners;
-    for (unsigned k = 0; k < 8; ++k)
-        corners[k] = {k & 1 ? own.max.x : own.min.x, k & 2 ? own.max.y : own.min.y, k & 4 ? own.max.z : own.min.z};
-    if (!instance.motion) {
-        for (const Vec3f c : corners) all.hold(instance.world_from_local.point(c));
-        return all;
-    }
-    for (const Box& box : moving_bounds(Hull(corners), *instance.motion).boxes)
-        all.hold(to_float(box.min)), all.hold(to_float(box.max));
-    return all;
-}
 
 SolidRanks rank_solids(const SceneDescription& scene, const std::vector<BoundedSolid>& solids) {
     std::vector<Nested> nested = nesting_solids(scene, solids);

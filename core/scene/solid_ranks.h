@@ -7,7 +7,6 @@
 
 namespace dg {
 
-struct Instance;
 struct SceneDescription;
 
 /// A solid around a point, and the share of test directions that found the point inside.
@@ -35,9 +34,6 @@ struct SolidRanks {
     std::vector<Overlap> overlaps;            // the first ones by priority or containment, and the first others
     int deepest = 0;                          // the most solids with boxes that hold each other
 };
-
-/// A box around all places of an instance, by the corners of the mesh's own box.
-Bounds bounds_over_time(const SceneDescription& scene, const Instance& instance);
 
 SolidRanks rank_solids(const SceneDescription& scene, const std::vector<BoundedSolid>& solids);
 

@@ -1,6 +1,7 @@
 // solid_ranks_test.cpp -- which solids overlap, touch or stay apart, and which of two is there.
 #include <doctest/doctest.h>
 
+#include "scene/instance_bounds.h"
 #include "scene/scene.h"
 #include "scene/test_scenes.h"
 
@@ -24,7 +25,8 @@ SceneDescription cubes(std::initializer_list<std::pair<float, Vec3f>> all) {
 
 SolidRanks ranks_of(const SceneDescription& d) {
     std::vector<BoundedSolid> solids;
-    for (std::uint32_t i = 0; i < d.instances.size(); ++i) solids.push_back({i, bounds_over_time(d, d.instances[i])});
+    for (std::uint32_t i = 0; i < d.instances.size(); ++i)
+        solids.push_back({i, bounds_over_time(d.meshes[d.instances[i].mesh], d.instances[i])});
     return rank_solids(d, solids);
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "scene/instance_bounds.h"
 #include "scene/scene.h"
 
 namespace dg {
@@ -43,7 +44,7 @@ void Scene::find_solids() {
     for (std::uint32_t i = 0; i < description_.instances.size(); ++i) {
         const Instance& instance = description_.instances[i];
         if (std::ranges::any_of(keys_of(instance.material), bounds_solid))
-            solids_.push_back({i, bounds_over_time(description_, instance)});
+            solids_.push_back({i, bounds_over_time(description_.meshes[instance.mesh], instance)});
     }
     ranks_ = rank_solids(description_, solids_);
 }
