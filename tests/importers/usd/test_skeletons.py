@@ -476,6 +476,100 @@ def test_normals_of_the_file_turn_with_the_skin(tmp_path: Path, moving: bool) ->
     assert np.allclose(mesh.normals, (0, -1, 0), atol=1e-6)
 
 
+_RADIUS, _BEND = 0.15, np.radians(80.0)
+_ROWS, _AROUND = np.linspace(-0.2, 1.3, 31), 2 * np.pi * np.arange(24) / 24
+
+
+def _on_arm(y: Any, angle: Any, bend: float) -> np.ndarray:
+    """Points of an arm of two joints, by the height and angle at rest."""
+    share = np.clip((y - 0.2) / 0.6, 0, 1)[..., None]
+    rest = np.stack([_RADIUS * np.cos(angle), y, _RADIUS * np.sin(angle)], axis=-1)
+    c, s = np.cos(bend), np.sin(bend)
+    elbow = np.array([0, 0.5, 0])
+    turned = (rest - elbow) @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) + elbow
+    return np.asarray((1 - share) * rest + share * turned)
+
+
+def _bending_arm(tmp_path: Path) -> Path:
+    """A round arm with normals, bent at its elbow by up to 80 degrees in 1 s."""
+    stage = stages.new_stage(tmp_path / "arm.usda", rate=24.0)
+    UsdSkel.Root.Define(stage, "/Root")
+    skeleton = UsdSkel.Skeleton.Define(stage, "/Root/skeleton")
+    skeleton.CreateJointsAttr(["a", "a/b"])
+    up = Gf.Matrix4d(1).SetTranslate(Gf.Vec3d(0, 0.5, 0))
+    skeleton.CreateBindTransformsAttr([Gf.Matrix4d(1), up])
+    skeleton.CreateRestTransformsAttr([Gf.Matrix4d(1), up])
+    made = UsdSkel.Animation.Define(stage, "/Root/animation")
+    made.CreateJointsAttr(["a/b"])
+    made.CreateTranslationsAttr([(0, 0.5, 0)])
+    made.CreateScalesAttr(Vt.Vec3hArray([Gf.Vec3h(1)]))
+    for code, half in ((0, 0.0), (24, _BEND / 2)):
+        turn = stages.quaternions([(0, 0, np.sin(half), np.cos(half))], Vt.QuatfArray)
+        made.CreateRotationsAttr().Set(turn, code)
+    UsdSkel.BindingAPI.Apply(skeleton.GetPrim()).CreateAnimationSourceRel().AddTarget(
+        "/Root/animation"
+    )
+    y, angle = (grid.ravel() for grid in np.meshgrid(_ROWS, _AROUND, indexing="ij"))
+    count, around = len(_ROWS), len(_AROUND)
+    corners = [
+        row * around + column % around
+        for i in range(count - 1)
+        for k in range(around)
+        for row, column in ((i, k), (i + 1, k), (i + 1, k + 1), (i, k + 1))
+    ]
+    faces = [4] * ((count - 1) * around)
+    mesh = stages.mesh(stage, "/Root/mesh", _on_arm(y, angle, 0), faces, corners)
+    mesh.CreateNormalsAttr(stages.vectors(np.stack([np.cos(angle), 0 * y, np.sin(angle)], 1)))
+    mesh.SetNormalsInterpolation("vertex")
+    binding = UsdSkel.BindingAPI.Apply(mesh.GetPrim())
+    binding.CreateSkeletonRel().AddTarget("/Root/skeleton")
+    share = np.clip((y - 0.2) / 0.6, 0, 1)
+    binding.CreateJointIndicesPrimvar(False, 2).Set([0, 1] * len(y))
+    weights = np.stack([1 - share, share], axis=1).ravel().tolist()
+    binding.CreateJointWeightsPrimvar(False, 2).Set(weights)
+    return stages.save(stage)
+
+
+@pytest.mark.parametrize("time", [0.0, 0.25, 0.5])
+def test_normals_of_a_bending_skin_are_those_of_its_surface(tmp_path: Path, time: float) -> None:
+    """Joints that turn normals alone, without the change of shape, err by up to 20 degrees here."""
+    mesh = dg.load(_bending_arm(tmp_path), time=time).meshes[0]
+    bend, step = _BEND * time, 1e-5
+    kinks = np.abs(_ROWS[:, None] - (0.2, 0.8)).min(axis=1) < 0.03
+    inner = _ROWS[1:-1][~kinks[1:-1]]
+    y, angle = (grid.ravel() for grid in np.meshgrid(inner, _AROUND, indexing="ij"))
+    along = _on_arm(y + step, angle, bend) - _on_arm(y - step, angle, bend)
+    around = _on_arm(y, angle + step, bend) - _on_arm(y, angle - step, bend)
+    normals = np.cross(around, along)
+    normals /= -np.linalg.norm(normals, axis=1, keepdims=True)
+    places = _on_arm(y, angle, bend)
+    far = np.linalg.norm(places[:, None] - mesh.positions[None], axis=2)
+    assert far.min(axis=1).max() < 1e-5
+    found = mesh.normals[far.argmin(axis=1)]
+    off = np.degrees(np.arccos(np.clip(np.einsum("ni,ni->n", found, normals), -1, 1)))
+    assert off.max() < 2
+
+
+def test_a_bending_skin_with_normals_blurs_as_the_mean_of_its_moments(tmp_path: Path) -> None:
+    path = _bending_arm(tmp_path)
+    place = np.eye(4)
+    place[:3, 3] = -0.2, 0.5, 4
+    camera = dg.Camera(transform=place, focal_length=50, sensor_size=(24, 16))
+    light = np.eye(4)
+    light[:3, :3] = np.array([[1, 0, 0], [0, 0.28, 0.96], [0, -0.96, 0.28]])
+
+    def light_of(time: float, shutter_s: float) -> float:
+        scene = dg.load(path, time=time)
+        scene.add_light(dg.DirectionalLight((1, 1, 1)), light)
+        open_ = camera.with_(shutter_time=shutter_s)
+        given: dict[str, Any] = {"resolution": (24, 16), "spp": 256, "light_paths": "off"}
+        return float(dg.render(scene, open_, **given).rgb.mean())
+
+    moments = [light_of(0.6 * (k + 0.5) / 12, 0.0) for k in range(12)]
+    assert max(moments) > 1.1 * min(moments) > 0
+    assert light_of(0.3, 0.6) == pytest.approx(np.mean(moments), rel=3e-3)
+
+
 def test_a_skin_in_an_instancer_stands_at_each_copy(tmp_path: Path) -> None:
     stage = stages.new_stage(tmp_path / "x.usda")
     stages.instancer(stage, "/i", [(10, 0, 0), (20, 0, 0)], prototypes=("/i/Root",))
