@@ -88,7 +88,6 @@ void bind_ghosts(nb::module_& m) {
         .def_prop_ro("reflecting", &GhostLens::reflecting, "Indices of the surfaces that reflect.")
         .def_prop_ro("film_z_mm", [](const GhostLens& g) { return g.film().center.z; })
         .def_prop_ro("vertices", [](const GhostLens& g) { return g.tracer().vertices(); })
-        .def_prop_ro("two_bounces", &GhostLens::two_bounces, "All ghosts, as (far, near).")
         .def("spots", &spots, "angle_rad"_a, "film_half_mm"_a, "nm"_a, "weight"_a, "rays"_a = 4096,
              "points"_a = false,
              "Brightest first: (mirrors, light on the film over that of the picture of the same source "

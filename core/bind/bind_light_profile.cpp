@@ -57,6 +57,5 @@ void bind_light_profile(nb::module_& m) {
         .def("factors", &factors, "directions"_a, "Factors (N, 3) along directions (N, 3) in the lamp's frame.")
         .def_prop_ro("peak", &LightProfile::peak)
         .def_prop_ro("spread", &LightProfile::spread)
-        .def_prop_ro("mean", [](const LightProfile& p) { return triple(p.mean()); })
-        .def_prop_ro("facing_mean", [](const LightProfile& p) { return triple(p.facing_mean()); });
+        .def_prop_ro("mean", [](const LightProfile& p) { return triple(p.mean()); });
 }

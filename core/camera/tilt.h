@@ -16,7 +16,4 @@ inline Affine3d lens_turn(Vec2d tilt_deg) {
     return {{cb, 0, -sb}, {sb * sa, ca, cb * sa}, {sb * ca, -sa, cb * ca}, {}};
 }
 
-/// Ratio of the film distances along the camera's axis and along the lens's axis.
-inline double tilt_cosine(Vec2d tilt_deg) { return lens_turn(tilt_deg).z.z; }
-
 }  // namespace dg

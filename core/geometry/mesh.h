@@ -29,7 +29,6 @@ struct Mesh {
     Curves curves;  // in place of triangles
 
     std::size_t vertex_count() const { return positions.size() / steps; }
-    std::size_t primitive_count() const { return triangles.size() + curves.starts.size(); }
     bool empty() const { return triangles.empty() && curves.empty(); }
 
     /// Throws Error with mesh and element for indices out of range, NaN or Inf, and wrong array

@@ -17,7 +17,7 @@ from daguerre.rendering.diffraction import Diffraction
 from daguerre.rendering.merging import merge
 from daguerre.rendering.session import Session
 from daguerre.sensors import Sensor, bands
-from daguerre.sensors.bands import channels_from_bands
+from daguerre.sensors.bands import weights_of_bands
 from tests.rendering import test_flare
 from tests.support.formats.pass_files import through_files
 from tests.support.scene import scenes
@@ -231,7 +231,7 @@ def colours() -> dg.Scene:
 @pytest.mark.parametrize(("bands", "error"), [(8, 0.02), (16, 0.008), (32, 0.004)])
 def test_channels_of_bands_are_those_of_the_film(bands: int, error: float) -> None:
     frame = drawn(camera(focal_length=12.0), 256, colours(), bands=bands).frame()
-    made = channels_from_bands(frame.bands, BODY)
+    made = frame.bands @ weights_of_bands(BODY, frame.bands.shape[2])
     difference = (made - frame.channels).reshape(-1, 3)
     assert np.sqrt((difference**2).mean()) < error
     np.testing.assert_allclose(made.mean(axis=(0, 1)), frame.channels.mean(axis=(0, 1)), rtol=0.003)
@@ -243,7 +243,7 @@ def test_bands_know_more_than_xyz() -> None:
     frame = drawn(camera(narrow, focal_length=12.0), 256, colours(), bands=16).frame()
     truth = frame.channels
     fitted = frame.xyz @ narrow.channels_from_xyz().T
-    made = channels_from_bands(frame.bands, narrow)
+    made = frame.bands @ weights_of_bands(narrow, frame.bands.shape[2])
     # Means of the picture's blocks: what their own noise leaves.
     errors = [
         np.abs((x - truth).reshape(4, 6, 6, 6, 3).mean(axis=(1, 3))).mean() for x in (fitted, made)
@@ -269,7 +269,7 @@ def test_diffraction_spreads_channels_as_it_spreads_light(monkeypatch: pytest.Mo
     assert kept.settings.diffraction.bands == 8
     kept.draw(0, 64)
     frame = kept.frame()
-    made = channels_from_bands(frame.bands, OBSERVER)
+    made = frame.bands @ weights_of_bands(OBSERVER, frame.bands.shape[2])
     np.testing.assert_allclose(made.sum((0, 1)), frame.channels.sum((0, 1)), rtol=0.02)
 
 

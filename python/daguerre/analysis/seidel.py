@@ -16,15 +16,6 @@ from .bench import Bench, FloatArray
 from .plotted import Plotted
 
 NAMES = ("S1", "S2", "S3", "S4", "S5", "C1", "C2")
-MEANINGS = (
-    "spherical aberration",
-    "coma",
-    "astigmatism",
-    "Petzval curvature",
-    "distortion",
-    "axial colour",
-    "lateral colour",
-)
 WIDEST_FIELD_DEG = 45.0  # a paraxial chief ray at a larger angle is meaningless
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from daguerre.analysis.bench import Bench
-from daguerre.analysis.figures import Figures, data_sheet
+from daguerre.analysis.figures import Figures
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,19 +41,6 @@ STYLE: Any = {  # matplotlib's keys
     "svg.hashsalt": "daguerre",
     "svg.fonttype": "path",
 }
-
-
-def sheet(bench: Bench, kind: str = "svg") -> bytes:
-    """Draws the data sheet of a lens at one setting.
-
-    Args:
-        bench: The lens with its focus and f-stop.
-        kind: ``svg``, ``png`` or ``pdf``.
-
-    Returns:
-        The file's bytes.
-    """
-    return page(data_sheet(bench), kind)
 
 
 def page(made: Figures, kind: str = "svg") -> bytes:

@@ -5,17 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
 import daguerre._core as _core
 from daguerre import memory
 from daguerre.errors import InputError
 from daguerre.frame.aovs import FILM_CHANNELS
-
-from .pixels import crop_box
-
-if TYPE_CHECKING:
-    from .pixels import CropLike
 
 #: Bytes per pixel of a frame beside its film: colours, XYZ, variance, alpha, counts, and buffers of
 #: writing. Measured: bench/film_memory.py.
@@ -60,12 +54,6 @@ def check_film(
     size = layout.width, layout.height
     each = pixel_bytes(layout, truth=truth, scatter=scatter)
     _check(size, each, 0, "keep fewer channels", free)
-
-
-def check_picture(crop: CropLike | None, resolution: tuple[int, int]) -> None:
-    """Checks a picture like ``check_film`` when only its size is known: for the smallest film."""
-    x0, y0, x1, y1 = crop_box(crop, (0, 0, *resolution))
-    check_film(_core.FilmLayout(width=x1 - x0, height=y1 - y0))
 
 
 def check_denoised(size: tuple[int, int], *, free: int | None = None) -> None:

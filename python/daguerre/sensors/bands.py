@@ -65,16 +65,3 @@ def weights_of_bands(sensor: Seeing, bands: int) -> FloatArray:
     nm = np.arange(FIRST_NM, LAST_NM + 1)
     rows = responses(sensor)
     return band_weights(bands, lambda at: np.stack([np.interp(at, nm, r) for r in rows], axis=1))
-
-
-def channels_from_bands(bands: NDArray[np.float32], sensor: Seeing) -> NDArray[np.float32]:
-    """Converts a frame's bands to a sensor's channels, as if rendered for that sensor.
-
-    Args:
-        bands: Bands of a frame, shape (H, W, N).
-        sensor: Sensor or film stock that defines the channels.
-
-    Returns:
-        Channels, shape (H, W, C), scaled so that D65 of luminance 1 is 1 in each.
-    """
-    return np.asarray(bands @ weights_of_bands(sensor, bands.shape[2]).astype(np.float32))

@@ -27,7 +27,6 @@ from .arithmetic import Arithmetic
 from .channels import Coordinate, UnsupportedError, Value, broadcast
 
 Outputs = Value | Mapping[str, Value] | None
-_Key = tuple[str, str]
 
 
 class Pictures(Protocol):

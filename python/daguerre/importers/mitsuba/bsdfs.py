@@ -29,7 +29,6 @@ from .node import Node
 from .principled import principled, principled_thin
 from .textures import Textures
 
-_WHITE = (1.0, 1.0, 1.0)
 _DISTRIBUTIONS = ("beckmann", "ggx", "phong", "as")
 
 

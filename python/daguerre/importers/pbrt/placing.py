@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from daguerre.files.json_item import clean
 from daguerre.motion.values import Keys
@@ -17,7 +16,6 @@ from .ledger import Ledger
 from .place import FilePlace
 from .transforms import Matrix, Moving
 
-Array = NDArray[np.float64]
 #: Maximum number of instances of a scene.
 MAX_INSTANCES = 20_000_000
 

@@ -9,14 +9,12 @@ Media by Dilution.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from daguerre.files.notes import Notes
 
 from .spectra import Color, Spectra
 from .state import Entity
 
-Array = NDArray[np.float64]
 #: Reduced scattering and absorption of red, green and blue light, 1/mm.
 MEASURED: dict[str, tuple[Color, Color]] = {
     "Apple": ((2.29, 2.39, 1.97), (0.0030, 0.0034, 0.046)),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from pxr import UsdGeom
 
 from daguerre.errors import InputError
@@ -13,7 +12,6 @@ from daguerre.scene.subdivision import Refiner, Rules, edges_of_chains
 
 from .values import Clock
 
-Indices = NDArray[np.int64]
 _SCHEMES = {"catmullClark": "catmull-clark", "loop": "loop", "bilinear": "bilinear"}
 _BOUNDARIES = {"edgeAndCorner": "edge and corner", "edgeOnly": "edge only", "none": "none"}
 _FACE_VARYING = {

@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 from daguerre.files.value import BriefRecord
 
 FloatArray = NDArray[np.float64]
-#: Number of coefficients that select a block, and of coefficients that measure noise.
-LOW_COUNT, HIGH_COUNT = 9, 16
+#: Number of coefficients that measure noise.
+HIGH_COUNT = 16
 
 
 @dataclass(frozen=True, repr=False)
