@@ -63,25 +63,10 @@ def read(
     moments: tuple[float, float] | None = None,
     into: Gathered | None = None,
 ) -> Scene:
-    """Reads a stage: .usd, .usda, .usdc or .usdz.
+    """Reads a stage in this process; :func:`.wall.read` has the arguments, result and errors.
 
-    Args:
-        path: The file.
-        time: Scene time, s: time codes over the stage's time codes per second.
-        variant: Selections of variants, each as ``/prim:set=name``.
-        allow_dirs: Further folders from which it may read layers and images.
-        purpose: Purposes of prims to draw, besides ``default``.
-        camera_units: Length of a unit of focal lengths and apertures, mm; default: a tenth of a
-            scene unit.
-        moments: Begin and end of the time that will be drawn, s; default: any may be.
-        into: Empty scene to read into, which is packed at once: large arrays stay in the memory of
-            the stage, its ``owner``. Default: a new scene.
-
-    Returns:
-        The scene; ``warnings`` has notes on unsupported content.
-
-    Raises:
-        InputError: The file cannot be read or is invalid.
+    ``into`` is an empty scene to read into, which is packed at once: large arrays stay in the
+    memory of the stage, its ``owner``. Default: a new scene.
     """
     if not math.isfinite(time):
         raise UsageError(f"time: wanted a finite number of seconds, got {time}")
