@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
 from typing import get_args, get_type_hints
 
@@ -16,16 +17,20 @@ from daguerre.camera.parameters import CAMERA, CAMERA_FLAGS, LIMITS, MOVABLE, SH
 from daguerre.cli.flags.camera import CameraFlags
 from daguerre.cli.flags.from_table import TableFlags, made_of
 from daguerre.cli.flags.groups import with_flags
-from daguerre.cli.flags.reference import texts, with_attributes
 from daguerre.cli.flags.shutter import ShutterFlags
 from daguerre.errors import InputError, UsageError
 from daguerre.parameters.need import Need
 from daguerre.parameters.parameter import REQUIRED, Parameter
 from daguerre.parameters.table import Table
-from daguerre.parameters.texts import attributes, page_table, put_between_marks
+from daguerre.parameters.texts import attributes
 from daguerre.setup.checks import check
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "script" / "docs" / "reference"))
+
+from cli_reference import texts, with_attributes  # noqa: E402
+from page_tables import page_table, put_between_marks  # noqa: E402
+
 SQUINT = Parameter(
     "squint",
     "Angle by which the camera squints, degrees, instead of {focus_on}",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import typing
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,6 @@ import typer.main
 
 from daguerre import cli
 from daguerre.camera.parameters import CAMERA_FLAGS, SHUTTER
-from daguerre.cli.completion.making import kinds
 from daguerre.cli.completion.placeholder import Takes, takes
 from daguerre.rendering.parameters import FLAGS
 
@@ -24,6 +24,9 @@ KINDS = {
     "FILTER": {"words": ["box"]},
 }
 ROOT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "script" / "docs" / "reference"))
+
+from completion_words import kinds  # noqa: E402
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ from daguerre.analysis.calibrate import names_of_models
 from daguerre.charts import KINDS as CHARTS
 from daguerre.cli.build import program
 from daguerre.cli.commands import COMMANDS
+from daguerre.cli.completion.answer import PROGRAM
 from daguerre.cli.help import HELP_FLAGS
 from daguerre.development.looks import LOOKS
 from daguerre.files import formats
@@ -25,8 +26,6 @@ from daguerre.post.effects.catalogue import EFFECTS
 from daguerre.rendering.pixels import FILTERS
 from daguerre.sensors import library as sensors
 from daguerre.stocks import library as stocks
-
-from .answer import PROGRAM
 
 #: Producers of the channels that a user chooses.
 _CHOSEN = [one for one in Source if one not in (Source.GUIDES, Source.ALWAYS)]

@@ -7,11 +7,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+import completion_words
+from page_tables import page_table, put_between_marks
+
 from daguerre.camera.camera import Camera
 from daguerre.camera.parameters import CAMERA, CAMERA_FLAGS, SHUTTER
-from daguerre.cli.completion import making as words
 from daguerre.parameters.table import Table
-from daguerre.parameters.texts import attributes, page_table, put_between_marks
+from daguerre.parameters.texts import attributes
 from daguerre.plates.match.parameters import MATCH
 from daguerre.plates.probe.parameters import LIGHT_PROBE
 from daguerre.rendering.parameters import FLAGS
@@ -52,7 +54,7 @@ def texts(root: Path) -> dict[Path, str]:
     page = (root / PAGE).read_text("utf-8")
     for section in SECTIONS:
         page = put_between_marks(page, section.name, page_table(section.table, section.names))
-    made = {PAGE: page, WORDS: words.text()}
+    made = {PAGE: page, WORDS: completion_words.text()}
     for path, (record, table) in RECORDS.items():
         text = (root / path).read_text("utf-8")
         made[path] = with_attributes(text, record.__name__, table, record.__dataclass_fields__)
