@@ -136,7 +136,7 @@ def without_shadows(rings: int, to_sun: np.ndarray, side: int = 4) -> np.ndarray
 
 @pytest.mark.parametrize("degrees", [0, 60, 90, 120])
 def test_a_convex_mesh_has_the_light_of_its_smooth_normals_without_shadows(degrees: int) -> None:
-    """What is left against the fine ball is from its size, not from the lift or the shadows."""
+    """The rest of the error against the fine ball is from its size, not from lift or shadows."""
     scene, to_sun = ball(10), sun_at(degrees)
     scene.add_light(dg.DirectionalLight((1, 1, 1)), facing(to_sun))
     whole = covered(10)
