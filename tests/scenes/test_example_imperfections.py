@@ -79,6 +79,7 @@ def test_every_picture_is_written_by_a_command() -> None:
 
 def test_the_page_is_what_the_words_say() -> None:
     assert (GALLERY / "imperfections.md").read_text() == word_page.page()
+    assert word_page.RECORD.read_text() == word_page.record()
     for word in WORDS:
         assert (GALLERY / f"{word.name}.jpg").stat().st_size < 400_000
 

@@ -111,21 +111,6 @@ The pictures show a plate, objects with alpha, the catchers' layer, and the comp
 plate](plates.md) has them larger, with the commands, and the difference from a true photograph.
 """
 
-ABOUT_NOISE = """## Noise in equal time
-
-![A part of the table at night, before and now, as rendered and denoised.](night_before.jpg)
-
-Each picture shows the table of the first picture in 52 CPU seconds, plus 4 to 9 for the denoiser:
-above by commit `1909491` with 29 samples per pixel, below by this one with 24; the right ones with
-`--denoise`. Paths now both reflect and refract at glass, and each point compares four lamps before
-it sends a shadow ray. The command:
-
-```
-daguerre render out/night_table.glb --lens double-gauss-50mm-f2 --f-stop 2 --res 900x600 --spp 24 \\
-    --tone soft -o out/night_now.png
-```
-"""
-
 ABOUT_BLENDER = """## A lens in Blender
 
 ![Blender's default cube before a wall of lamps, through a double Gauss at f/2.](blender_lens.jpg)
@@ -271,11 +256,12 @@ def main() -> None:
             photograph_page.overview("plates", into_plate.OVERVIEW, 900)
     page = [INTRODUCTION, *section(PICTURES), ABOUT_GLASS, *section(GLASS), ABOUT_WORDS]
     page += [ABOUT_PHOTOGRAPHS, ABOUT_CALIBRATED, ABOUT_PLATES]
-    page += [ABOUT_LIGHT, *section(LIGHT), ABOUT_NOISE, ABOUT_BLENDER]
+    page += [ABOUT_LIGHT, *section(LIGHT), ABOUT_BLENDER]
     page += blender_shots()
     page += [ABOUT_MOTION, *section(MOTION)]
     (PAGES / "README.md").write_text("\n".join(page) + CREDITS)
     (PAGES / "imperfections.md").write_text(word_page.page())
+    word_page.RECORD.write_text(word_page.record())
     (PAGES / "exposure.md").write_text(
         photograph_page.page(photographs.INTRODUCTION, photographs.SHEETS)
     )

@@ -137,8 +137,8 @@ LATERAL = Word(
 All colours are in focus, but the blue image is larger than the red one (or smaller). Edges that
 run around the centre get a blue and a yellow side, more so toward the corner. The pictures are
 stars of a test chart through a Canon 50 mm f/0.95 stopped down to f/8: above in the lower left
-corner of the frame, 16 mm off the axis, and below near the centre, which has no fringes. The table
-gives the distance of red and blue from green. Polynomials of degree 9 lose some light at the edge
+corner of the frame, 16 mm off the axis, and below near the centre, which has no fringes. In the
+corner red is 1.2 px and blue 4.6 px from green. Polynomials of degree 9 lose some light at the edge
 of the field. It is the one aberration that is easy to correct, with
 `lateral-colour:...,inverse=1`.""",
     tuple(
