@@ -41,7 +41,7 @@ def thumbnails(name: str, text: str) -> list[str]:
             continue
         words = alt.replace('"', "&quot;")
         shown = f'<img src="gallery/{file}" width="{WIDTH}" loading="lazy" alt="{words}">'
-        found.append(f'[{shown}](gallery/{name}#{place} "{words}")')
+        found.append(f"[{shown}](gallery/{name}#{place})")
     return found
 
 

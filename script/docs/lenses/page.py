@@ -49,9 +49,16 @@ def _section(entry: Entry) -> str:
         if (DOCS / folder / f"{entry.name}.{suffix}").exists()
     )
     return (
-        f"### {entry.name}\n\n**{entry.title}**{year}{also}, {entry.type}{film}. "
+        f"### {entry.name}\n\n**{entry.title}**{year}{also}{_kinds(entry)}{film}. "
         f"{_numbers(entry)}. {entry.patent}.{remark}{_sheet(entry)}\n\n{pictures}\n"
     )
+
+
+def _kinds(entry: Entry) -> str:
+    """The kinds of the lens that the heading of its family does not say."""
+    first, *rest = entry.type.split(", ")
+    said = [] if first.lower() == _family(entry).lower() else [first]
+    return "".join(f", {kind}" for kind in [*said, *rest])
 
 
 def _numbers(entry: Entry) -> str:
