@@ -1,6 +1,7 @@
 // grid_cdf.h -- a choice in a grid of weights by inverse CDFs, of rows and then of columns. Samples keep the
 // stratification of their random numbers. CDFs are fixed-point numbers of 32 bits: 4 bytes an entry, and far more
-// precise near 1 than floats. Source of guide tables: Chen and Asau 1974; Devroye 1986, II.2.4 and III.2.4.
+// precise near 1 than floats, and the choice leaves more than 24 bits for a place in the entry (Distribution2D does
+// not). Source of guide tables: Chen and Asau 1974; Devroye 1986, II.2.4 and III.2.4.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -25,10 +26,15 @@ inline Vec2d with_more_bits(Vec2f u) {
     return {all(x, std::uint32_t(more >> 32)), all(y, std::uint32_t(more))};
 }
 
+/// A number in [0, 1) in units of 2^-32. The last unit is left out: an entry that begins there is empty.
+inline double in_units(double u) {
+    return std::min(u * 0x1p32, 0x1p32 - 2);
+}
+
 /// Chooses one of the entries [first, last] of a CDF, where entry i begins at begins[i], in units of 2^-32, and the last
 /// of all `count` entries ends at 1. Replaces u by a number that is uniform in [0, 1) within the entry.
 inline int choose_by_cdf(const std::uint32_t* begins, int count, int first, int last, double& u) {
-    const double x = std::min(u * 0x1p32, 0x1p32 - 2);   // an entry that begins at 2^32 - 1 is empty
+    const double x = in_units(u);
     const auto whole = std::uint32_t(x);
     for (int left = last - first + 1; left > 1;) {
         const int half = left / 2;
@@ -77,8 +83,7 @@ class GuidedGrid {
 
   private:
     static int choose_guided(const std::uint32_t* begins, const std::uint16_t* guides, int count, double& u) {
-        const auto whole = std::uint32_t(std::min(u * 0x1p32, 0x1p32 - 2));
-        const auto j = int(std::uint64_t(whole) * std::uint32_t(count) >> 32);
+        const auto j = int(std::uint64_t(in_units(u)) * std::uint32_t(count) >> 32);
         return choose_by_cdf(begins, count, guides[j], guides[j + 1], u);
     }
 

@@ -82,17 +82,16 @@ class Pilot {
                                  settings_.technique, settings_.light_guide);
         if (weight.emission().empty() && !weight.bounces()) return {};
         Flights straight, bounced;
-        fly<StraightLightPass>(weight, straight);
-        if (weight.bounces()) fly<BouncedLightPass>(weight, bounced);
-        if (straight.arrivals.empty() && bounced.arrivals.empty()) return {};
-        const std::vector<PilotBlock> blocks = look();
-        const PilotPicture picture{blocks, coarse_.sensor.width, pixels() / double(blocks.size())};
+        std::vector<PilotBlock> blocks;
         for (int round = 1;; ++round) {
+            fly<StraightLightPass>(weight, straight);
+            if (weight.bounces()) fly<BouncedLightPass>(weight, bounced);
+            if (straight.arrivals.empty() && bounced.arrivals.empty()) return {};
+            if (blocks.empty()) blocks = look();
+            const PilotPicture picture{blocks, coarse_.sensor.width, pixels() / double(blocks.size())};
             const PlanChoice choice =
                 choose_plan(picture, straight.pilot(), bounced.pilot(), costs(straight, bounced));
             if (choice.sure || round == kMostRounds) return choice.plan;
-            fly<StraightLightPass>(weight, straight);
-            if (weight.bounces()) fly<BouncedLightPass>(weight, bounced);
         }
     }
 

@@ -108,7 +108,6 @@ class Focus(BriefRecord):
             behind = behind_window(self.core_scene, self.world, direction, around, start)
             if behind is not None:
                 return self._behind(direction, behind, what)
-        if self.core_scene is not None:
             origin = tuple(self.world[:3, 3])
             toward = tuple(self.world[:3, :3] @ direction)
             hit = self.core_scene.first_hit(origin, toward, start)
